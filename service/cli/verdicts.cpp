@@ -26,10 +26,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
   const SceneGeometry& geometry = (*prepared)->loaded.geometry;
   CollisionBackend& backend = *(*prepared)->backend;
   const TouchRule rule = TouchRule::of(geometry, options.tolerance_m);
-  const std::int32_t within =
-      options.within_m
-          ? static_cast<std::int32_t>(std::min(*options.within_m / geometry.lattice.step_m, 0x1p30))
-          : INT32_MAX - 2;
+  const std::int32_t within = within_steps(geometry, options.within_m);
   std::vector<LatticePose> lattice;
   for (const Pose& pose : poses) {
     const auto at = to_lattice(pose, geometry);

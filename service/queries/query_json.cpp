@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -233,6 +234,11 @@ void append_clearance_line(const SceneGeometry& geometry, std::size_t number, co
                      {"mobile", part_of(geometry.tool_report, c.mobile_id)}};
   }
   out += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::int32_t within_steps(const SceneGeometry& geometry, std::optional<double> within_m) {
+  if (!within_m) return INT32_MAX - 2;
+  return static_cast<std::int32_t>(std::min(*within_m / geometry.lattice.step_m, 0x1p30));
 }
 
 }  // namespace palpate

@@ -40,4 +40,8 @@ void append_clearance_line(const SceneGeometry& geometry, std::size_t number, co
                            const Clearance& clearance, bool touches, const std::string& engine,
                            std::string& out);
 
+/// What CollisionBackend::clearance is asked for where poses further than `within_m` have no line; none: as
+/// far as it can be told.
+std::int32_t within_steps(const SceneGeometry& geometry, std::optional<double> within_m);
+
 }  // namespace palpate

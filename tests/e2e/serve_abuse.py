@@ -203,13 +203,13 @@ def test_bad_bodies_are_named_with_their_field():
             for kind in ('application/json', 'text/csv', 'application/vnd.palpate.poses')
         )
         nan = struct.pack('<7d', 0, 0, float('nan'), 0, 0, 0, 1)
-        for body, headers, field in [
+        for body, headers, field, *word in [
             (b'{', as_json, 'body'),
             (b'[' * 100_000, as_json, 'body'),
             (b'{"a":' * 50_000, as_json, 'body'),
             (b'\xff\xfe', as_json, 'body'),
             (b'{"poses":1}', as_json, 'poses'),
-            (b'{"poses":[]}', as_json, 'poses'),
+            (b'{"poses":[]}', as_json, 'poses', 'no pose'),
             (b'{"poses":[[1,2]]}', as_json, 'poses[0]'),
             (b'{"poses":[[0,0,0,0,0,0,1],[0,0,0,0,0,0,9]]}', as_json, 'poses[1]'),
             (b'{"pose":[0,0,0,0,0,0,"1"]}', as_json, 'pose'),
@@ -218,12 +218,13 @@ def test_bad_bodies_are_named_with_their_field():
             (b'x,y\n1,2\n', as_csv, 'body'),
             (b'', as_csv, 'body'),
             (b'x,y,z,qx,qy,qz,qw\n1,2,3,4,5,6,seven\n', as_csv, 'body'),
-            (b'', as_bytes, 'body'),
-            (b'x' * 55, as_bytes, 'body'),
+            (b'', as_bytes, 'body', 'no pose'),
+            (b'x' * 55, as_bytes, 'body', '56'),
             (nan, as_bytes, 'poses[0]'),
         ]:
             told = problem(server.ask('POST', query, body, headers), 400, 'bad-value')
             expect(told['field'] == field and '\n' not in told['detail'], (body[:60], told))
+            expect(all(w in told['detail'] for w in word), (body[:60], told))
         problem(server.ask('POST', query, b'x', {'Content-Type': 'image/png'}), 415, 'media-type')
         problem(server.ask('POST', query + '?sets=2', b'x', as_csv), 400, 'bad-value')
         problem(server.ask('GET', f'/v1/scenes/{name}?wait=nan'), 400, 'bad-value')
@@ -249,7 +250,62 @@ def test_bad_bodies_are_named_with_their_field():
                     told['type'] == 'error' and told['problem']['status'] == 400 and loop.receive() is None,
                     told,
                 )
+                expect(loop.closed_with == 1008, loop.closed_with)
         up(server)
+
+
+def test_parameters_that_are_unknown_or_contradict_each_other_are_named():
+    folder = rooted()
+    with Server('--root', folder.path) as server:
+        name = server.ready(server.ask('POST', '/v1/scenes', {'path': 'scene.json'}))
+        scene = f'/v1/scenes/{name}'
+        for method, path, field, word in [
+            ('POST', scene + '/query?nmaes=1', 'nmaes', '"names"'),
+            ('POST', scene + '/query?any=1&tolerance=0.001', 'tolerance', 'unknown'),
+            ('POST', scene + '/query?any=1&any=0', 'any', 'twice'),
+            ('POST', scene + '/query?any=1&clearance=1', 'clearance', 'any'),
+            ('POST', scene + '/query?any=1&within=0.1', 'within', 'any'),
+            ('POST', scene + '/query?any=1&names=1', 'names', 'any'),
+            ('POST', scene + '/query?clearance=1&names=1', 'names', 'clearance'),
+            ('POST', scene + '/query?within=near', 'within', '100'),
+            ('POST', scene + '/query?within=-1', 'within', '100'),
+            ('POST', scene + '/query?within=', 'within', '100'),
+            ('POST', scene + '/path?names=1', 'names', 'takes none'),
+            ('GET', scene + '?wiat=1', 'wiat', '"wait"'),
+            ('GET', scene + '/geometry?max_triangle=100', 'max_triangle', '"max_triangles"'),
+            ('GET', scene + '/triangles?id=1', 'id', '"ids"'),
+            ('GET', scene + '/voxels?klass=internal', 'klass', '"class"'),
+            ('GET', scene + '/haptic?format=binary', 'format', 'takes none'),
+            ('GET', '/v1/assemblies/x/geometry?triangles=1', 'triangles', '"max_triangles"'),
+            ('GET', '/v1/sessions/x/stream?fromat=binary', 'fromat', '"format"'),
+            ('GET', '/v1/scenes?page=2', 'page', 'takes none'),
+            ('POST', '/v1/scenes?profile=paper', 'profile', 'takes none'),
+            ('GET', '/v1/runs/x/trace.csv?from=1', 'from', 'takes none'),
+        ]:
+            body = {'poses': [PRESSED]} if method == 'POST' else None
+            told = problem(server.ask(method, path, body), 400, 'bad-value')
+            expect(told['field'] == field and word in told['detail'], (path, told))
+        with WebSocket(server, '/v1/sessions/x/stream?format=xml') as viewer:
+            expect(viewer.status == 400, viewer.head)
+        for path in ('/healthz?probe=1', '/?utm=1'):
+            expect(server.ask('GET', path).status == 200, path)
+
+
+def test_each_status_has_a_type_of_its_own():
+    folder = rooted()
+    (folder / 'run').mkdir()
+    (folder / 'run' / 'trace.csv').write_text('time_s\n')
+    with Server('--root', folder.path) as server:
+        beyond = server.ask('GET', '/v1/runs/run/trace.csv', headers={'Range': 'bytes=99999999-'})
+        problem(beyond, 416, 'range')
+        expect(beyond.headers['Content-Range'] == 'bytes */7', beyond.headers)
+        plain = server.ask('GET', '/v1/sessions/x/stream')
+        problem(plain, 426, 'upgrade')
+        expect(
+            plain.headers['Upgrade'] == 'websocket' and 'upgrade' in plain.headers['Connection'].lower(),
+            plain.headers,
+        )
+        problem(server.ask('GET', '/v1/info', headers={'X-Long': 'y' * 40_000}), 431, 'header')
 
 
 def test_bad_uploads_leave_nothing_behind():
@@ -266,7 +322,9 @@ def test_bad_uploads_leave_nothing_behind():
             {**good, 'static': ('.hidden', b'x')},
             {**good, 'tool': [good['tool'], good['tool']]},
             {**good, 'stiffness': 'soft'},
+            {**good, 'stiffness': '-5'},
             {**good, 'units': 'm' * 200},
+            {**good, 'units': 'km'},
             {'scene': '{"static":' * 40},
             {'scene': json.dumps(folder.scene)},
             {'scene': json.dumps({**folder.scene, 'tool': {'mesh': '/etc/passwd'}})},
@@ -277,6 +335,20 @@ def test_bad_uploads_leave_nothing_behind():
             answer = server.upload(**parts)
             expect(answer.status in (400, 403, 413) and answer.json()['detail'], (list(parts), answer))
             expect(not list(inside.iterdir()), ('left behind', list(parts)))
+        for field, value, word in [
+            ('units', 'km', '"mm"'),
+            ('tool_units', 'km', '"mm"'),
+            ('static_units', 'km', '"mm"'),
+            ('stiffness', '-5', 'from 0'),
+            ('stiffness', '1e300', 'from 0'),
+            ('stiffness', 'soft', 'no number'),
+            ('profile', 'fine', '"refined"'),
+        ]:
+            told = problem(server.upload(**good, **{field: value}), 400, 'bad-value')
+            expect(told['field'] == field and word in told['detail'], told)
+            expect('scene.json' not in told['detail'], told)
+        told = problem(server.upload(scene='{"static":[]}'), 400, 'bad-value')
+        expect(told['field'] == 'scene' and told['detail'].startswith('scene.json: /static'), told)
         for kind in (
             'multipart/form-data',
             'multipart/form-data; boundary=',

@@ -243,16 +243,35 @@ def test_what_is_refused():
                 'guide',
             ),
             ({'scene': TAKEN_OUT, 'folder': 'x', 'more': 1}, 'more'),
+            (
+                {
+                    'scene': {**TAKEN_OUT, 'static': [{'mesh': 'pump.glb', 'units': 'mm', 'scale': 3}]},
+                    'folder': 'x',
+                },
+                'stands beside "scale"',
+            ),
+            ({'scene': {**TAKEN_OUT, 'response': {'stiffness': -5}}, 'folder': 'x'}, 'from 0'),
+            (
+                {
+                    'scene': {**TAKEN_OUT, 'device': {'driver': 'simulated', 'path': 'path.csv'}},
+                    'path': 'x',
+                    'folder': 'x',
+                },
+                'path.csv, line 1',
+            ),
         ):
             answer = server.ask('POST', f'/v1/assemblies/{pumped["id"]}/save', order)
             expect(answer.status == 400 and word in answer.json()['detail'], (order, answer))
+            expect(str(folder.path) not in answer.json()['detail'], answer)
             expect(not (folder.path / 'x').exists(), 'nothing is left behind')
         bad = server.ask(
             'POST',
             f'/v1/assemblies/{pumped["id"]}/scene',
             {'scene': {**TAKEN_OUT, 'response': {'stiffnes': 1}}},
         )
-        expect(bad.status == 202 and server.settled(bad.json()['id'])['state'] == 'failed', bad)
+        expect(
+            bad.status == 400 and bad.json()['field'] == 'scene' and 'stiffness' in bad.json()['detail'], bad
+        )
         expect(
             server.ask('POST', '/v1/scenes', {'path': 'scene.json', 'start': 'maybe'}).status == 400, 'start'
         )

@@ -15,6 +15,12 @@ def test_clearance_is_what_the_command_line_says():
         expect(answer.status == 200, answer)
         for wrong in ('?clearance=2', '?clearance=1&any=1'):
             expect(server.ask('POST', query + wrong, {'poses': rows}).status == 400, wrong)
+        near = [
+            server.ask('POST', query + asked, {'poses': rows})
+            for asked in ('?within=0.003', '?clearance=1&within=0.003')
+        ]
+        none = server.ask('POST', query + '?within=0', {'poses': [[0, 0, 0.05, 0, 0, 0, 1]] * 200})
+        expect(none.status == 200 and none.body == b'', none)
     told = palpate(
         'query', folder / 'scene.json', '--poses', folder / 'poses.csv', '--clearance', '--backend', 'cpu'
     )
@@ -25,6 +31,20 @@ def test_clearance_is_what_the_command_line_says():
         any(line['touches'] for line in lines) and any(line['clearance'] for line in lines),
         'touching and apart',
     )
+    told = palpate(
+        'query',
+        folder / 'scene.json',
+        '--poses',
+        folder / 'poses.csv',
+        '--within',
+        '0.003',
+        '--backend',
+        'cpu',
+    )
+    kept = [json.loads(line)['clearance'] for line in told.out.splitlines()]
+    expect(0 < len(kept) < 40 and max(kept) > 0, 'some, and some of them apart')
+    for answer in near:
+        expect(answer.status == 200 and answer.body.decode() == told.out, (answer, told.out[:300]))
 
 
 def test_a_path_is_examined_beside_a_loop_on_the_scene():

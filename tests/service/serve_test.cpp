@@ -33,6 +33,17 @@ struct Sent {
   bool zero_when_closed = false;
 };
 
+/// Is made, and is not plugged in when it is to be opened.
+class AbsentDevice final : public HapticDevice {
+ public:
+  std::string name() const override { return "absent"; }
+  DeviceCapabilities capabilities() const override { return {.max_force_n = 8}; }
+  Result<void> open() override { return Error{ErrorCode::kNoDevice, "no such device is plugged in"}; }
+  void close() noexcept override {}
+  DeviceSample read() noexcept override { return {}; }
+  void write(const Wrench&, const Vec3&) noexcept override {}
+};
+
 /// A hand that presses 0.1 mm deep and stays there.
 class RememberingDevice final : public HapticDevice {
  public:
@@ -104,8 +115,9 @@ class Serve : public testing::Test {
       return std::make_unique<CountingBackend>(
           asked_, queries_[static_cast<std::size_t>(asked_.made++) % queries_.size()]);
     };
-    parts_.make_device = [](const std::string&, const Scene&, const Vec3&,
+    parts_.make_device = [](const std::string& name, const Scene&, const Vec3&,
                             const std::string&) -> Result<std::unique_ptr<HapticDevice>> {
+      if (name == "absent") return std::unique_ptr<HapticDevice>(std::make_unique<AbsentDevice>());
       return std::unique_ptr<HapticDevice>(std::make_unique<RememberingDevice>(sent_));
     };
     parts_.list_devices = [] { return std::vector<DeviceLine>(); };
@@ -226,6 +238,21 @@ TEST_F(Serve, BesideASessionABatchHoldsNothingThatTheLoopNeeds) {
   EXPECT_EQ(asked_.made, 2);
   EXPECT_EQ(field(ask("DELETE", "/v1/sessions/" + session), "state"), "ended");
   EXPECT_TRUE(sent_.closed && sent_.zero_when_closed);
+}
+
+// It was 201, and then a session that had failed by "a fault of ours".
+TEST_F(Serve, ADeviceThatIsNotPluggedInIsToldAtOnceAndLeavesNothing) {
+  const std::string before = ask("GET", "/v1/sessions");
+  for (int i = 0; i < 2; ++i) {  // the recording's name is free again
+    const std::string answer =
+        ask("POST", "/v1/sessions", "{\"scene\":\"" + scene_ + R"(","device":"absent","record":"try"})");
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 409 "));
+    EXPECT_EQ(field(answer, "type"), "urn:palpate:problem:no-device");
+    EXPECT_EQ(field(answer, "field"), "device");
+    EXPECT_EQ(field(answer, "detail"), "no such device is plugged in");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "try"));
+  EXPECT_EQ(ask("GET", "/v1/sessions"), before);
 }
 
 // The last: afterwards nobody is there.

@@ -162,6 +162,18 @@ TEST(Telemetry, IsPausedFromTheTickOnThatStandsStill) {
   EXPECT_EQ(told, expected);
 }
 
+// It was that of the newest message, a sixtieth of a second old, and stayed so when the session was over.
+TEST(Telemetry, KnowsTheLastTick) {
+  Metrics metrics;
+  Telemetry telemetry(metrics, nullptr);
+  for (std::int64_t i = 0; i < 3; ++i) {
+    TickRecord tick;
+    tick.tick = i;
+    ASSERT_TRUE(telemetry.on_tick(tick));
+    EXPECT_EQ(telemetry.last_tick().tick, i);
+  }
+}
+
 // The loop's record said what would have been sent.
 TEST(PausableDevice, OfMetalFeelsAndTellsNoForceAndFadesInAgain) {
   Hand hand(0);

@@ -180,6 +180,7 @@ void add_assembly_routes(Router& router, AssemblyStore& assemblies, SceneStore& 
               }});
   router.add({.method = "GET",
               .pattern = "v1/assemblies/*/geometry",
+              .parameters = {"max_triangles"},
               .handle = [&assemblies, &workers](HttpRequest request, const Reply& reply) {
                 workers.post([&assemblies, request = std::move(request), reply] {
                   reply(geometry(assemblies, request));

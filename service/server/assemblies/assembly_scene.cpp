@@ -4,7 +4,9 @@
 #include <set>
 
 #include "model/cache/geometry_cache.h"
+#include "model/scene/scene_file.h"
 #include "service/server/http/json_input.h"
+#include "service/server/http/safe_path.h"
 
 namespace palpate {
 namespace {
@@ -58,6 +60,15 @@ std::variant<std::uint64_t, Problem> write_assembly_scene(const Assembly& assemb
   const bool company = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
     return !stands_alone((assembly.folder->path() / name).string());
   });
+  // The reader judges the scene where it will lie, and before any mesh is there.
+  const std::string text = scene.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (auto problem = write_new_file(folder / "scene.json", text)) return *problem;
+  if (!path.empty())
+    if (auto problem = write_new_file(folder / "path.csv", path)) return *problem;
+  if (const auto readable = read_scene((folder / "scene.json").string()); !readable) {
+    const std::string sentence = without_folder(readable.error().sentence, folder);
+    return bad_request(sentence, sentence.starts_with("path.csv") ? "path" : "scene");
+  }
   std::uint64_t bytes = 0;
   for (const AssemblyFile& file : assembly.files) {
     if (!names.contains(file.name) && !(company && !file.mesh)) continue;
@@ -67,10 +78,6 @@ std::variant<std::uint64_t, Problem> write_assembly_scene(const Assembly& assemb
     if (error) return Problem{507, "storage", "the scene can't be stored: " + error.message(), ""};
     bytes += file.bytes;
   }
-  const std::string text = scene.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  if (auto problem = write_new_file(folder / "scene.json", text)) return *problem;
-  if (!path.empty())
-    if (auto problem = write_new_file(folder / "path.csv", path)) return *problem;
   return bytes + text.size() + path.size();
 }
 

@@ -10,6 +10,7 @@
 
 #include "model/mesh/confined_import.h"
 #include "service/server/http/json_input.h"
+#include "service/server/http/safe_path.h"
 
 namespace palpate {
 namespace {
@@ -226,11 +227,7 @@ void AssemblyStore::read(Entry& entry) {
                           });
     done += 1;
     if (!read) {
-      file.error = read.error().sentence;
-      // What the client doesn't know, the folder, is left out.
-      const std::string folder = assembly.folder->path().string() + "/";
-      for (auto at = file.error.find(folder); at != std::string::npos; at = file.error.find(folder))
-        file.error.erase(at, folder.size());
+      file.error = without_folder(read.error().sentence, assembly.folder->path());
       last_error = file.error;
       continue;
     }

@@ -180,13 +180,17 @@ class HttpConnection {
       co_return co_await send(response, head_only) && keep_alive_;
     }
     route_ = route->pattern;
+    if (auto problem = refuse_parameters(*route, request)) {
+      refusal_ = *problem;
+      co_return co_await refuse();
+    }
     request.content_type = std::string(view(head[http::field::content_type]));
     request.accept = std::string(view(head[http::field::accept]));
     request.range = std::string(view(head[http::field::range]));
 
     if (route->socket) {
       if (!beast::websocket::is_upgrade(head)) {
-        refusal_ = Problem{426, "method", "this is a WebSocket", ""};
+        refusal_ = Problem{426, "upgrade", "this is a WebSocket", ""};
         co_return co_await refuse();
       }
       auto opened = route->socket(request);
@@ -205,7 +209,7 @@ class HttpConnection {
       co_return false;
     }
 
-    const bool sink_fits = route->sink && request.content_type.starts_with(route->sink_type);
+    const bool sink_fits = route->sink && media_type(request.content_type) == route->sink_type;
     const std::size_t limit = sink_fits ? route->sink_limit : route->body_limit;
     const bool has_body = !parser.is_done() && (parser.chunked() || parser.content_length().value_or(0) > 0);
     const Problem large{413, "too-large", "the body may have " + std::to_string(limit) + " bytes here",

@@ -1,8 +1,66 @@
 #include "service/server/http/http_message.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 
 namespace palpate {
+namespace {
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// What stands before the next `separator`; `text` becomes what stands behind it.
+std::string_view take_piece(std::string_view& text, char separator) {
+  const auto end = text.find(separator);
+  const std::string_view piece = text.substr(0, end);
+  text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+  return trim(piece);
+}
+
+/// The weight of a media range: its parameter q, else 1; one that is no number is 0.
+double weight_of(std::string_view parameters) {
+  while (!parameters.empty()) {
+    const std::string_view parameter = take_piece(parameters, ';');
+    if (parameter.size() < 2 || (parameter[0] != 'q' && parameter[0] != 'Q') || parameter[1] != '=') continue;
+    double weight = 0;
+    const std::string_view digits = parameter.substr(2);
+    std::from_chars(digits.data(), digits.data() + digits.size(), weight);
+    return weight;
+  }
+  return 1;
+}
+
+}  // namespace
+
+std::string media_type(std::string_view content_type) {
+  std::string type(trim(content_type.substr(0, content_type.find(';'))));
+  std::transform(type.begin(), type.end(), type.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return type;
+}
+
+bool prefers(std::string_view accept, std::string_view type, std::string_view otherwise) {
+  double wanted = 0;
+  // The nearest range decides: the type itself, then its kind, then any.
+  const std::string kind = std::string(otherwise.substr(0, otherwise.find('/'))) + "/*";
+  std::array<double, 3> others{-1, -1, -1};
+  while (!accept.empty()) {
+    std::string_view parameters = take_piece(accept, ',');
+    const std::string range = media_type(take_piece(parameters, ';'));
+    const double weight = weight_of(parameters);
+    if (range == type) wanted = weight;
+    if (range == otherwise) others[0] = weight;
+    if (range == kind) others[1] = weight;
+    if (range == "*/*") others[2] = weight;
+  }
+  const auto other = std::find_if(others.begin(), others.end(), [](double weight) { return weight >= 0; });
+  return wanted > 0 && (other == others.end() || wanted >= *other);
+}
 
 bool percent_decode(std::string_view text, std::string& out) {
   out.clear();
@@ -36,6 +94,7 @@ bool decode_target(std::string_view target, HttpRequest& request) {
     path = slash == std::string_view::npos ? std::string_view{} : path.substr(slash + 1);
   }
   request.query.clear();
+  request.repeated.clear();
   std::string_view rest =
       question == std::string_view::npos ? std::string_view{} : target.substr(question + 1);
   while (!rest.empty()) {
@@ -45,7 +104,7 @@ bool decode_target(std::string_view target, HttpRequest& request) {
     std::string name, value;
     if (!percent_decode(pair.substr(0, equals), name)) return false;
     if (equals != std::string_view::npos && !percent_decode(pair.substr(equals + 1), value)) return false;
-    request.query[name] = std::move(value);
+    if (!request.query.emplace(name, std::move(value)).second) request.repeated = name;
     rest = amp == std::string_view::npos ? std::string_view{} : rest.substr(amp + 1);
   }
   return true;

@@ -19,6 +19,7 @@ struct HttpRequest {
   std::string path;                          ///< as sent, without the query
   std::vector<std::string> segments;         ///< of the path, percent-decoded
   std::map<std::string, std::string> query;  ///< percent-decoded
+  std::string repeated;                      ///< a name of the query that comes twice; empty: none
   std::string content_type, accept, range, expect;
   std::string body;  ///< empty when it went to a BodySink
 
@@ -59,6 +60,10 @@ struct HttpResponse {
         body(problem.json()) {  // NOLINT(google-explicit-constructor)
     if (status == 503) headers.emplace_back("Retry-After", "1");
     if (status == 401) headers.emplace_back("WWW-Authenticate", "Bearer");
+    if (status == 426) {  // RFC 9110, 15.5.22 and 7.8
+      headers.emplace_back("Upgrade", "websocket");
+      headers.emplace_back("Connection", "Upgrade");
+    }
   }
 };
 
@@ -78,7 +83,8 @@ struct SocketMessage {
   std::string head;
   std::shared_ptr<const std::string> tail;
   bool binary = false;
-  bool close = false;  ///< the last one
+  bool close = false;         ///< the last one
+  std::uint16_t code = 1000;  ///< of that close (RFC 6455, 7.4.1)
 };
 
 /// One end of a WebSocket conversation. All calls come from the connection's own strand, one at a time.
@@ -101,6 +107,13 @@ class SocketHandler {
 /// Splits and decodes a request's target ("/v1/scenes/a%2Fb?wait=3"). Nothing: not a path, a bad percent
 /// sign, a zero byte.
 bool decode_target(std::string_view target, HttpRequest& request);
+
+/// Of "Application/JSON; charset=utf-8": "application/json".
+std::string media_type(std::string_view content_type);
+
+/// Whether an Accept field names `type` and wants it no less than `otherwise`, which is what is sent without
+/// being named (RFC 9110, 12.5.1). Both in small letters.
+bool prefers(std::string_view accept, std::string_view type, std::string_view otherwise);
 
 /// Undoes percent-encoding. False: an escape that is none, or a zero byte.
 bool percent_decode(std::string_view text, std::string& out);

@@ -23,6 +23,7 @@ Problem bad_request(std::string detail, std::string field) {
 
 Problem problem_of(const Error& error, std::string field) {
   if (error.code == ErrorCode::kBadValue) return bad_request(error.sentence, std::move(field));
+  if (error.code == ErrorCode::kNoDevice) return {409, "no-device", error.sentence, std::move(field)};
   return {500, "internal", error.sentence, std::move(field)};
 }
 

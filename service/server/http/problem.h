@@ -19,7 +19,8 @@ struct Problem {
 /// A bad value of the request's own: 400.
 Problem bad_request(std::string detail, std::string field = {});
 
-/// What the library said no to: 400 for a bad value, 500 for anything else.
+/// What the library said no to: 400 for a bad value, 409 for a device that isn't there, 500 for anything
+/// else.
 Problem problem_of(const Error& error, std::string field = {});
 
 }  // namespace palpate

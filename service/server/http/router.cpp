@@ -1,5 +1,8 @@
 #include "service/server/http/router.h"
 
+#include <algorithm>
+
+#include "model/scene/scene_json.h"
 #include "service/server/http/json_input.h"
 
 namespace palpate {
@@ -19,6 +22,23 @@ bool fits(std::string_view pattern, const std::vector<std::string>& segments) {
 }
 
 }  // namespace
+
+std::optional<Problem> refuse_parameters(const Route& route, const HttpRequest& request) {
+  if (route.open) return std::nullopt;  // probes and browsers add what they like, and nothing depends on it
+  if (!request.repeated.empty())
+    return bad_request("the parameter \"" + shown_text(request.repeated) + "\" comes twice",
+                       shown_text(request.repeated));
+  for (const auto& [name, ignored] : request.query) {
+    if (std::find(route.parameters.begin(), route.parameters.end(), name) != route.parameters.end()) continue;
+    return bad_request(
+        "unknown parameter \"" + shown_text(name) + "\"; " +
+            (route.parameters.empty()
+                 ? "'" + shown_text(request.path) + "' takes none"
+                 : "the nearest known one is \"" + nearest_word(name.substr(0, 40), route.parameters) + "\""),
+        shown_text(name));
+  }
+  return std::nullopt;
+}
 
 std::variant<const Route*, Problem> Router::find(const HttpRequest& request, std::string& allowed) const {
   const std::string& method = request.method == "HEAD" ? "GET" : request.method;

@@ -16,6 +16,13 @@ std::optional<fs::path> path_below(const fs::path& root, const fs::path& name) {
   return real;
 }
 
+std::string without_folder(std::string sentence, const fs::path& folder) {
+  const std::string prefix = folder.string() + "/";
+  for (auto at = sentence.find(prefix); at != std::string::npos; at = sentence.find(prefix, at))
+    sentence.erase(at, prefix.size());
+  return sentence;
+}
+
 bool plain_name(std::string_view name) {
   if (name.empty() || name.size() > 100 || name.front() == '.') return false;
   return std::all_of(name.begin(), name.end(), [](char c) {

@@ -15,4 +15,8 @@ std::optional<std::filesystem::path> path_below(const std::filesystem::path& roo
 /// front.
 bool plain_name(std::string_view name);
 
+/// A sentence without where `folder` lies on this machine: a client learns what is wrong with its files, and
+/// they are called as it called them.
+std::string without_folder(std::string sentence, const std::filesystem::path& folder);
+
 }  // namespace palpate

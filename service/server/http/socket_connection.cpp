@@ -108,9 +108,9 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
             asio::buffer(message->head), message->tail ? asio::buffer(*message->tail) : asio::const_buffer()};
         co_await socket_.async_write(parts, asio::redirect_error(asio::use_awaitable, error));
         if (message->close && !error) {
-          co_await socket_.async_close(
-              context_.stopping ? websocket::close_code::going_away : websocket::close_code::normal,
-              asio::redirect_error(asio::use_awaitable, error));
+          co_await socket_.async_close(context_.stopping ? websocket::close_code::going_away
+                                                         : static_cast<websocket::close_code>(message->code),
+                                       asio::redirect_error(asio::use_awaitable, error));
           break;
         }
       } else if (!woken_) {

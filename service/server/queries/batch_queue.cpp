@@ -236,16 +236,18 @@ Result<void> BatchQueue::clearance_slice(Batch& batch, std::chrono::steady_clock
   const BatchRequest& request = batch.request;
   const SceneGeometry& geometry = (*request.scene)->loaded.geometry;
   PoliteBackend backend(store_, *request.scene);
+  const std::int32_t within = within_steps(geometry, request.within_m);
   for (std::size_t i = 0; i < kSlicePoses && batch.next < request.poses.size(); ++i, ++batch.next) {
     if (i > 0 && std::chrono::steady_clock::now() - start > kSliceTime) break;
     const Pose& pose = request.poses[batch.next];
     const auto lattice = to_lattice(pose, geometry);
     if (!lattice) return lattice.error();
     Clearance clearance;
-    if (auto done = backend.clearance(*lattice, INT32_MAX - 2, clearance); !done) return done;
+    if (auto done = backend.clearance(*lattice, within, clearance); !done) return done;
+    ++metrics_.poses;
+    if (request.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
     append_clearance_line(geometry, batch.next, pose, clearance, clearance.kind == Clearance::Kind::kTouching,
                           backend.measured_by(), batch.made);
-    ++metrics_.poses;
   }
   return {};
 }

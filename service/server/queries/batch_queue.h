@@ -24,10 +24,11 @@ struct BatchRequest {
   SceneUse scene;
   std::vector<Pose> poses;
   bool sets = true;
-  bool names = false;      ///< the parts that touch, by their paths
-  bool any = false;        ///< touch or not, a line a pose, and nothing else
-  bool clearance = false;  ///< how far it is, a line a pose, and nothing else
-  bool binary = false;     ///< 64 bytes a pose instead of JSON lines
+  bool names = false;                ///< the parts that touch, by their paths
+  bool any = false;                  ///< touch or not, a line a pose, and nothing else
+  bool clearance = false;            ///< how far it is, a line a pose, and nothing else
+  std::optional<double> within_m{};  ///< with `clearance`: lines of poses that are no further, and no others
+  bool binary = false;               ///< 64 bytes a pose instead of JSON lines
 };
 
 /// Answers the poses of all queries on one thread, a slice of each by turns. Beside loops on the same scene

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "service/cli/pose_input.h"
+#include "service/server/http/http_message.h"
 #include "service/server/http/json_input.h"
 
 namespace palpate {
@@ -44,7 +45,8 @@ std::variant<std::vector<Pose>, Problem> from_json(const std::string& body, cons
     return poses;
   }
   const nlohmann::json& list = json["poses"];
-  if (!list.is_array() || list.empty()) return bad_request("\"poses\" is no list of poses", "poses");
+  if (!list.is_array()) return bad_request("\"poses\" is no list of poses", "poses");
+  if (list.empty()) return bad_request("\"poses\" has no pose, and at least one is wanted", "poses");
   if (list.size() > limits.poses) return too_many(list.size(), limits);
   for (std::size_t i = 0; i < list.size(); ++i)
     if (auto problem = take(list[i], "poses[" + std::to_string(i) + "]")) return *problem;
@@ -73,16 +75,17 @@ std::variant<Pose, Problem> pose_from_bytes(const char* bytes, const std::string
 
 std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content_type,
                                                         const std::string& body, const ServerLimits& limits) {
-  content_type = content_type.substr(0, content_type.find_first_of("; "));
-  if (content_type == "application/json") return from_json(body, limits);
+  const std::string type = media_type(content_type);
+  if (type == "application/json") return from_json(body, limits);
   std::vector<Pose> poses;
-  if (content_type == "text/csv") {
+  if (type == "text/csv") {
     std::istringstream in(body);
     Result<std::vector<Pose>> read = read_poses(in, "body");
     if (!read) return bad_request(read.error().sentence, "body");
     poses = std::move(*read);
-  } else if (content_type == "application/vnd.palpate.poses") {
-    if (body.empty() || body.size() % kPoseBytes != 0)
+  } else if (type == "application/vnd.palpate.poses") {
+    if (body.empty()) return bad_request("the body has no pose, and at least one is wanted", "body");
+    if (body.size() % kPoseBytes != 0)
       return bad_request(
           "the body has " + std::to_string(body.size()) + " bytes, no multiple of 56 (7 doubles a pose)",
           "body");
@@ -95,7 +98,7 @@ std::variant<std::vector<Pose>, Problem> read_pose_body(std::string_view content
   } else {
     return Problem{415, "media-type",
                    "poses come as text/csv, application/json or application/vnd.palpate.poses, not as '" +
-                       shown_text(content_type) + "'",
+                       shown_text(type) + "'",
                    "Content-Type"};
   }
   if (poses.size() > limits.poses) return too_many(poses.size(), limits);

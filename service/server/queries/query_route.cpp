@@ -1,5 +1,8 @@
 #include "service/server/queries/query_route.h"
 
+#include <charconv>
+#include <optional>
+
 #include "service/server/http/json_input.h"
 #include "service/server/queries/pose_body.h"
 
@@ -21,24 +24,46 @@ void add_query_route(Router& router, SceneStore& store, BatchQueue& batches, Wor
     if (clearance != "0" && clearance != "1")
       return reply(
           bad_request("clearance is '" + shown_text(clearance) + "', allowed is 0 or 1", "clearance"));
-    if (any == "1" && clearance == "1")
-      return reply(bad_request("any and clearance are two questions: ask one", "clearance"));
+    const std::string within = request.query_or("within", "");
+    std::optional<double> within_m;
+    if (request.query.contains("within")) {
+      double value = 0;
+      const auto [stop, error] = std::from_chars(within.data(), within.data() + within.size(), value);
+      if (error != std::errc() || stop != within.data() + within.size() || !(value >= 0 && value <= 100))
+        return reply(bad_request("within is '" + shown_text(within) + "', allowed is 0 to 100 m", "within"));
+      within_m = value;
+    }
+    const bool how_far = clearance == "1" || within_m;
+    if (any == "1" && how_far)
+      return reply(bad_request(
+          std::string("any and ") + (within_m ? "within" : "clearance") + " are two questions: ask one",
+          within_m ? "within" : "clearance"));
+    if (names == "1" && (any == "1" || how_far))
+      return reply(bad_request(std::string("names is for whole answers, and ") +
+                                   (any == "1" ? "any"
+                                    : within_m ? "within"
+                                               : "clearance") +
+                                   " asks for none",
+                               "names"));
     auto scene = store.use(request.segments[2], false);
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     auto poses = read_pose_body(request.content_type, request.body, limits);
     if (const auto* problem = std::get_if<Problem>(&poses)) return reply(*problem);
-    batches.add({.scene = std::get<SceneUse>(scene),
-                 .poses = std::move(std::get<std::vector<Pose>>(poses)),
-                 .sets = sets == "1",
-                 .names = names == "1",
-                 .any = any == "1",
-                 .clearance = clearance == "1",
-                 .binary = any == "0" && clearance == "0" &&
-                           request.accept.find("application/vnd.palpate.wrenches") != std::string::npos},
-                reply);
+    batches.add(
+        {.scene = std::get<SceneUse>(scene),
+         .poses = std::move(std::get<std::vector<Pose>>(poses)),
+         .sets = sets == "1",
+         .names = names == "1",
+         .any = any == "1",
+         .clearance = how_far,
+         .within_m = within_m,
+         .binary = any == "0" && !how_far &&
+                   prefers(request.accept, "application/vnd.palpate.wrenches", "application/x-ndjson")},
+        reply);
   };
   router.add({.method = "POST",
               .pattern = "v1/scenes/*/query",
+              .parameters = {"sets", "names", "any", "clearance", "within"},
               .body_limit = limits.poses_bytes,
               .handle = [&workers, ask](HttpRequest request, Reply reply) {
                 // A short body is read at once: a lone pose then never waits behind a long one.

@@ -220,20 +220,27 @@ class VoxelAnswers {
 }  // namespace
 
 void add_drawing_routes(Router& router, SceneStore& store, WorkerPool& workers, const ServerLimits& limits) {
-  router.add(
-      {.method = "GET", .pattern = "v1/scenes/*/geometry", .handle = [&](HttpRequest request, Reply reply) {
-         workers.post([&store, request = std::move(request), reply] { reply(geometry(store, request)); });
-       }});
-  router.add(
-      {.method = "GET", .pattern = "v1/scenes/*/triangles", .handle = [&](HttpRequest request, Reply reply) {
-         workers.post([&store, request = std::move(request), reply] { reply(triangles(store, request)); });
-       }});
+  router.add({.method = "GET",
+              .pattern = "v1/scenes/*/geometry",
+              .parameters = {"max_triangles", "body"},
+              .handle = [&](HttpRequest request, Reply reply) {
+                workers.post(
+                    [&store, request = std::move(request), reply] { reply(geometry(store, request)); });
+              }});
+  router.add({.method = "GET",
+              .pattern = "v1/scenes/*/triangles",
+              .parameters = {"body", "ids"},
+              .handle = [&](HttpRequest request, Reply reply) {
+                workers.post(
+                    [&store, request = std::move(request), reply] { reply(triangles(store, request)); });
+              }});
   router.add(
       {.method = "GET", .pattern = "v1/scenes/*/parts", .handle = [&](HttpRequest request, Reply reply) {
          workers.post([&store, request = std::move(request), reply] { reply(scene_parts(store, request)); });
        }});
   router.add({.method = "GET",
               .pattern = "v1/scenes/*/voxels",
+              .parameters = {"class", "body"},
               .handle = [&, answers = std::make_shared<VoxelAnswers>()](HttpRequest request, Reply reply) {
                 workers.post([&store, &limits, answers, request = std::move(request), reply] {
                   reply(answers->get(store, limits, request));

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "model/cache/geometry_cache.h"
+#include "model/scene/scene_file.h"
 #include "service/server/http/json_input.h"
 #include "service/server/http/safe_path.h"
 #include "service/server/scenes/content_hash.h"
@@ -126,6 +127,9 @@ std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, con
                              std::to_string(kMostNeighbours) + " of them",
                          "scene");
   }
+  // What preparation would say of the scene file is said at once.
+  if (const auto readable = read_scene(file.string(), profile); !readable)
+    return bad_request(without_folder(readable.error().sentence, folder), "scene");
   SceneContent out;
   out.id = hash.hex().substr(0, 32);
   out.file = file;

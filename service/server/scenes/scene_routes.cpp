@@ -236,7 +236,7 @@ void add_scene_routes(Router& router, SceneStore& store, WorkerPool& workers, Me
               .body_limit = limits.json_bytes,
               .handle =
                   [&store, &workers, &limits, root](HttpRequest request, Reply reply) {
-                    if (!request.content_type.starts_with("application/json"))
+                    if (media_type(request.content_type) != "application/json")
                       return reply(Problem{
                           415, "media-type",
                           "a scene comes as multipart/form-data or is named in application/json, not as '" +
@@ -257,6 +257,7 @@ void add_scene_routes(Router& router, SceneStore& store, WorkerPool& workers, Me
                   }});
   router.add({.method = "GET",
               .pattern = "v1/scenes/*",
+              .parameters = {"wait"},
               .handle = [&store, &workers](HttpRequest request, Reply reply) {
                 const std::string& id = request.segments[2];
                 const std::string wait = request.query_or("wait", "0");

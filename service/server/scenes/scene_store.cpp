@@ -7,6 +7,7 @@
 
 #include "service/loop/thread_share.h"
 #include "service/server/http/json_input.h"
+#include "service/server/http/safe_path.h"
 
 namespace palpate {
 namespace {
@@ -409,10 +410,7 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
     problem = Problem{500, "internal", std::string("preparing the scene failed: ") + error.what(), ""};
   }
   if (problem) {
-    // A client learns what is wrong with its scene, not where it lies on this machine.
-    const std::string folder = entry->content.folder.string() + "/";
-    for (std::size_t at = 0; (at = problem->detail.find(folder, at)) != std::string::npos;)
-      problem->detail.erase(at, folder.size());
+    problem->detail = without_folder(std::move(problem->detail), entry->content.folder);
     log_.warn("scene_failed", {{"scene", entry->content.id}, {"detail", problem->detail}});
     bool removed = false;
     {

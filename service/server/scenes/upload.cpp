@@ -46,7 +46,7 @@ class Upload final : public BodySink {
     const auto scene = scene_text();
     if (const auto* problem = std::get_if<Problem>(&scene)) return reply(*problem);
     workers_.post([folder = folder_, text = std::get<std::string>(scene), &limits = limits_, done = done_,
-                   reply, bytes = bytes_, name = shown_name()] {
+                   reply, bytes = bytes_, name = shown_name(), fields = stated_] {
       // Who is told no may try again at once, with the room that this one took.
       const auto refuse = [&](const Problem& problem) {
         folder->drop();
@@ -55,7 +55,7 @@ class Upload final : public BodySink {
       if (const auto problem = write_new_file(folder->path() / kSceneName, text)) return refuse(*problem);
       auto content = read_scene_content(folder->path() / kSceneName, folder->path(), std::nullopt, limits,
                                         Neighbours::kByContent);
-      if (const auto* problem = std::get_if<Problem>(&content)) return refuse(*problem);
+      if (const auto* problem = std::get_if<Problem>(&content)) return refuse(as_sent(*problem, fields));
       auto& made = std::get<SceneContent>(content);
       made.name = name;
       made.uploaded = true;
@@ -66,6 +66,20 @@ class Upload final : public BodySink {
   }
 
  private:
+  /// JSON pointers of the scene that is made of parts, and the parts that said what stands there.
+  using Stated = std::map<std::string, std::string>;
+
+  /// A fault of such a scene, told of the part that is at fault.
+  static Problem as_sent(Problem problem, const Stated& stated) {
+    for (const auto& [pointer, part] : stated) {
+      const std::string start = std::string(kSceneName) + ": " + pointer + " ";
+      if (!problem.detail.starts_with(start)) continue;
+      problem.detail = part + " " + problem.detail.substr(start.size());
+      problem.field = part;
+    }
+    return problem;
+  }
+
   std::optional<Problem> begin(const PartHead& head) {
     part_ = head.name;
     text_.clear();
@@ -79,15 +93,14 @@ class Upload final : public BodySink {
             "the file name '" + shown_text(head.filename) +
                 "' is not letters, digits, '.', '_', '-' only, at most 100, without a dot in front",
             part_);
-      // The two bodies may come from files of one name.
-      const std::string name = part_ == "file" ? head.filename
-                               : part_ == "tool"
-                                   ? "tool_" + head.filename
-                                   : "static" + std::to_string(statics_.size()) + "_" + head.filename;
-      if (name == kSceneName || !names_.insert(name).second)
+      if (part_ == "tool" && !tool_.empty()) return bad_request("there are two tools", "tool");
+      // Bodies may come from files of one name.
+      std::string name = head.filename;
+      if (part_ != "file" && names_.contains(name))
+        name = (part_ == "tool" ? "tool" : "static" + std::to_string(statics_.size())) + "_" + name;
+      if (!names_.insert(name).second)
         return bad_request("the file name '" + name + "' comes twice, or is taken", part_);
       if (part_ == "static") statics_.push_back(name);
-      if (part_ == "tool" && !tool_.empty()) return bad_request("there are two tools", "tool");
       if (part_ == "tool") tool_ = name;
       if (!file_.open(folder_->path() / name)) return storage_problem("opened");
       return std::nullopt;
@@ -119,21 +132,22 @@ class Upload final : public BodySink {
   }
 
   std::string shown_name() const {
-    return fields_.contains("scene")
-               ? "upload"
-               : tool_.substr(5) + " on " + statics_.front().substr(statics_.front().find('_') + 1);
+    return fields_.contains("scene") ? "upload" : tool_ + " on " + statics_.front();
   }
 
-  /// A body of a file. `units` alone is for files that state none.
-  ordered_json body(const std::string& name, const char* own_units) const {
+  /// A body of a file, at `pointer` of the scene. `units` alone is for files that state none.
+  ordered_json body(const std::string& name, const char* own_units, const std::string& pointer) {
     ordered_json out{{"mesh", name}};
     const char* units = fields_.contains(own_units) ? own_units : states_unit(name) ? "" : "units";
-    if (fields_.contains(units)) out["units"] = fields_.at(units);
+    if (fields_.contains(units)) {
+      out["units"] = fields_.at(units);
+      stated_[pointer + "/units"] = units;
+    }
     return out;
   }
 
   /// The scene as sent, or one made of the parts `static` and `tool`.
-  std::variant<std::string, Problem> scene_text() const {
+  std::variant<std::string, Problem> scene_text() {
     if (fields_.contains("scene")) {
       if (!tool_.empty() || !statics_.empty() || fields_.size() > 1)
         return bad_request("beside 'scene' only 'file' may stand", "scene");
@@ -144,8 +158,10 @@ class Upload final : public BodySink {
           std::string("the part '") + (tool_.empty() ? "tool" : "static") + "' is missing, and so is 'scene'",
           tool_.empty() ? "tool" : "static");
     ordered_json scene;
-    for (const std::string& name : statics_) scene["static"].push_back(body(name, "static_units"));
-    scene["tool"] = body(tool_, "tool_units");
+    for (std::size_t i = 0; i < statics_.size(); ++i)
+      scene["static"].push_back(body(statics_[i], "static_units", "/static/" + std::to_string(i)));
+    scene["tool"] = body(tool_, "tool_units", "/tool");
+    for (const char* key : {"profile", "stiffness"}) stated_[std::string("/response/") + key] = key;
     if (fields_.contains("profile")) scene["response"]["profile"] = fields_.at("profile");
     if (fields_.contains("stiffness")) {
       const std::string& text = fields_.at("stiffness");
@@ -168,8 +184,9 @@ class Upload final : public BodySink {
   std::size_t parts_ = 0;
   std::string part_, text_, tool_;
   std::vector<std::string> statics_;
-  std::set<std::string> names_;
+  std::set<std::string> names_{kSceneName};
   std::map<std::string, std::string> fields_;
+  Stated stated_;
   SpoolFile file_;
 };
 

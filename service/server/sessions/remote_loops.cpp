@@ -27,6 +27,8 @@ constexpr std::uint32_t kContact = 1, kTruncated = 2,
 using Clock = std::chrono::steady_clock;
 using nlohmann::ordered_json;
 
+constexpr std::uint16_t kPolicyViolation = 1008, kInternalError = 1011;  ///< of a close (RFC 6455, 7.4.1)
+
 constexpr std::size_t kPoseMessage = 16 + 7 * sizeof(double);  ///< seq, time, pose
 
 /// A pose on its way, with what comes back as it was sent.
@@ -80,8 +82,10 @@ std::variant<PoseMessage, Problem> read_message(std::string_view data, bool bina
   return out;
 }
 
-std::string error_message(const Problem& problem) {
-  return R"({"type":"error","problem":)" + problem.json() + "}";
+/// The last message of a loop that goes no further.
+SocketMessage error_message(const Problem& problem) {
+  return {R"({"type":"error","problem":)" + problem.json() + "}", nullptr, false, true,
+          problem.status < 500 ? kPolicyViolation : kInternalError};
 }
 
 /// The start of a binary wrench; planes follow it.
@@ -208,7 +212,7 @@ class RemoteLoops::Socket final : public SocketHandler {
       const std::lock_guard lock(loop_->mutex);
       if (loop_->closed) return;
       if (const auto* problem = std::get_if<Problem>(&read)) {
-        loop_->reply = SocketMessage{error_message(*problem), nullptr, false, true};
+        loop_->reply = error_message(*problem);
         loop_->closed = true;
         wake = loop_->wake;
       } else {
@@ -334,7 +338,7 @@ void RemoteLoops::answer(Loop& loop) {
   if (!pose->planes) areas = loop.field ? felt_area(response, stiffness) : response.areas;
   if (!solved) {
     ++metrics_.backend_errors;
-    message = {error_message(Problem{500, "internal", solved.error().sentence, ""}), nullptr, false, true};
+    message = error_message(Problem{500, "internal", solved.error().sentence, ""});
   } else if (pose->binary) {
     std::string& out = message.head;
     const auto put = [&out](const auto& value) {

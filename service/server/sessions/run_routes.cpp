@@ -136,7 +136,7 @@ HttpResponse file_of(const fs::path& root, const HttpRequest& request) {
     const auto range = byte_range(request.range, size);
     if (!range) {
       HttpResponse refused(Problem{
-          416, "bad-value", "the range '" + shown_text(request.range) + "' is none of this file's", "Range"});
+          416, "range", "the range '" + shown_text(request.range) + "' is none of this file's", "Range"});
       refused.headers.emplace_back("Content-Range", "bytes */" + std::to_string(size));
       return refused;
     }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -44,14 +45,30 @@ struct SessionHost::Session {
   std::thread thread;
   std::mutex joining;
 
-  mutable std::mutex mutex;  // for what follows
-  bool paused = false, over = false;
+  mutable std::mutex mutex;         // for what follows
+  std::condition_variable settled;  ///< `open` or `over` has come true
+  bool paused = false, open = false, over = false;
   std::optional<Error> error;
   ordered_json summary;
 
   void join() {
     const std::lock_guard lock(joining);
     if (thread.joinable()) thread.join();
+  }
+
+  void opened() {
+    {
+      const std::lock_guard lock(mutex);
+      open = true;
+    }
+    settled.notify_all();
+  }
+
+  /// Waits until the device is open. Why it never was, if so.
+  std::optional<Error> wait_open() {
+    std::unique_lock lock(mutex);
+    settled.wait(lock, [this] { return open || over; });
+    return open ? std::nullopt : error;
   }
 
   bool is_over() const {
@@ -115,6 +132,7 @@ struct SessionHost::Session {
       error = why;
       summary = ordered_json::parse(text, nullptr, false);
     }
+    settled.notify_all();
     log.info("session_over",
              {{"session", id}, {"error", why ? why->sentence : ""}, {"ticks", outcome ? outcome->ticks : 0}});
     telemetry->finish(why ? "the session failed" : stop ? "the session was stopped" : "the session is over");
@@ -177,7 +195,7 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
           .count();
   const bool simulated = session->device_name == "simulated";
 
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (closed_) return Problem{503, "busy", "the server stops", ""};
   forget_old();
   std::size_t running = 0;
@@ -193,12 +211,12 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
   auto device =
       parts_.make_device(session->device_name, scene.loaded.scene, scene.loaded.geometry.tool_gc_m, "");
   if (!device)
-    return Problem{device.error().code == ErrorCode::kNoDevice ? 409u : 400u,
-                   device.error().code == ErrorCode::kNoDevice ? "conflict" : "bad-value",
-                   device.error().sentence, "device"};
+    return device.error().code == ErrorCode::kNoDevice ? problem_of(device.error(), "device")
+                                                       : bad_request(device.error().sentence, "device");
   session->device = std::move(*device);
   session->max_force = session->device->capabilities().max_force_n;
-  session->pausable = std::make_unique<PausableDevice>(*session->device, simulated);
+  session->pausable = std::make_unique<PausableDevice>(*session->device, simulated,
+                                                       [session = session.get()] { session->opened(); });
   session->backend = std::make_unique<BackendInTurns>(*scene.backend, session->use->turns());
   const fs::path folder = root_ / request.record;
   if (!request.record.empty()) {
@@ -219,6 +237,17 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
   session->thread = std::thread([session = session.get(), this] { session->run(log_); });
   log_.info("session_started",
             {{"session", session->id}, {"scene", session->scene}, {"device", session->device_name}});
+  lock.unlock();  // a device may take its time, and others may be stopped meanwhile
+  if (const std::optional<Error> error = session->wait_open()) {
+    session->join();
+    {
+      const std::lock_guard again(mutex_);
+      sessions_.remove(session);
+    }
+    std::error_code ignored;
+    if (session->recording) fs::remove_all(folder, ignored);  // its name is free for the next try
+    return problem_of(*error, error->code == ErrorCode::kNoDevice ? "device" : "");
+  }
   return session->json();
 }
 
@@ -342,8 +371,15 @@ void add_session_routes(Router& router, SessionHost& sessions, WorkerPool& worke
                 });
               }});
   router.add(
-      {.method = "GET", .pattern = "v1/sessions/*/stream", .socket = [&sessions](const HttpRequest& request) {
-         return sessions.watch(request.segments[2], request.query_or("format", "json") == "binary");
+      {.method = "GET",
+       .pattern = "v1/sessions/*/stream",
+       .parameters = {"format"},
+       .socket =
+           [&sessions](const HttpRequest& request) -> std::variant<std::shared_ptr<SocketHandler>, Problem> {
+         const std::string format = request.query_or("format", "json");
+         if (format != "json" && format != "binary")
+           return bad_request("format is '" + shown_text(format) + "', allowed is json or binary", "format");
+         return sessions.watch(request.segments[2], format == "binary");
        }});
 }
 

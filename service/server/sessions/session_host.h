@@ -30,7 +30,8 @@ class SessionHost {
     std::string scene, device, record;
     std::optional<double> duration_s;
   };
-  std::variant<std::string, Problem> start(const Request& request);  ///< the Session, as JSON
+  /// The Session, as JSON, once its device is open.
+  std::variant<std::string, Problem> start(const Request& request);
   std::optional<std::string> view(const std::string& id) const;
   std::string all() const;  ///< {"sessions":[…]}
   std::variant<std::string, Problem> set_paused(const std::string& id, bool paused);

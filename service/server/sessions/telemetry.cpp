@@ -104,6 +104,7 @@ Result<void> Telemetry::on_tick(const TickRecord& tick) {
   if (tick.result_age_ticks >= 0) metrics_.result_age_s.add(tick.result_age_ticks / 1e3);
   {
     const std::lock_guard lock(mutex_);
+    shown_ = tick;
     if (tick.result_age_ticks >= 0) ages_.add(tick.result_age_ticks);
     lateness_ns_.add(static_cast<std::int64_t>(tick.lateness_us * 1000));
   }
@@ -154,10 +155,9 @@ void Telemetry::publish() {
     frame_json_.clear();
     lateness_max_us_ = 0;
   }
-  {
+  if (message) {
     const std::lock_guard lock(mutex_);
-    shown_ = tick_;
-    if (message) newest_ = std::move(message);
+    newest_ = std::move(message);
   }
   wake_all();
 }
