@@ -78,13 +78,10 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
         names: Optional[Any] = None,
         out: Optional[Mapping[str, NDArray[Any]]] = None,
     ) -> None:
-        if isinstance(names, str):
-            names = (names,)
-        chosen = (
-            tuple(self._specification)
-            if names is None and out is None
-            else tuple(out if names is None else names)
-        )
+        wanted: Any = (names,) if isinstance(names, str) else names
+        if wanted is None:
+            wanted = self._specification if out is None else out
+        chosen = tuple(wanted)
         self._arrays: dict[str, NDArray[Any]] = {}
         self.shape = shape
         for name in chosen:
