@@ -6,20 +6,21 @@
 #include <charconv>
 
 namespace palpate {
-namespace {
 
-std::string_view trim(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
+
+namespace {
 
 /// What stands before the next `separator`; `text` becomes what stands behind it.
 std::string_view take_piece(std::string_view& text, char separator) {
   const auto end = text.find(separator);
   const std::string_view piece = text.substr(0, end);
   text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
-  return trim(piece);
+  return without_blanks(piece);
 }
 
 /// The weight of a media range: its parameter q, else 1; one that is no number is 0.
@@ -38,7 +39,7 @@ double weight_of(std::string_view parameters) {
 }  // namespace
 
 std::string media_type(std::string_view content_type) {
-  std::string type(trim(content_type.substr(0, content_type.find(';'))));
+  std::string type(without_blanks(content_type.substr(0, content_type.find(';'))));
   std::transform(type.begin(), type.end(), type.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return type;

@@ -108,6 +108,9 @@ class SocketHandler {
 /// sign, a zero byte.
 bool decode_target(std::string_view target, HttpRequest& request);
 
+/// Without blanks and tabs at either end (RFC 9110's optional white space).
+std::string_view without_blanks(std::string_view text);
+
 /// Of "Application/JSON; charset=utf-8": "application/json".
 std::string media_type(std::string_view content_type);
 

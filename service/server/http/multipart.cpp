@@ -4,6 +4,8 @@
 #include <cctype>
 #include <utility>
 
+#include "service/server/http/http_message.h"
+
 namespace palpate {
 namespace {
 
@@ -14,20 +16,14 @@ bool same_word(std::string_view a, std::string_view b) {
          std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 /// The value of `name` in "form-data; name=\"x\"; filename=\"y\"", quoted or not.
 std::optional<std::string> parameter(std::string_view field, std::string_view name) {
   std::size_t at = field.find(';');
   while (at != std::string_view::npos) {
-    std::string_view rest = trim(field.substr(at + 1));
+    std::string_view rest = without_blanks(field.substr(at + 1));
     const auto equals = rest.find('=');
     if (equals == std::string_view::npos) return std::nullopt;
-    const std::string_view key = trim(rest.substr(0, equals));
+    const std::string_view key = without_blanks(rest.substr(0, equals));
     std::string_view value = rest.substr(equals + 1);
     std::string text;
     std::size_t used = 0;
@@ -39,7 +35,7 @@ std::optional<std::string> parameter(std::string_view field, std::string_view na
       if (used >= value.size()) return std::nullopt;  // no closing quote
     } else {
       used = std::min(value.find(';'), value.size());
-      text = std::string(trim(value.substr(0, used)));
+      text = std::string(without_blanks(value.substr(0, used)));
     }
     if (same_word(key, name)) return text;
     const auto next = value.find(';', used);
@@ -53,7 +49,8 @@ std::optional<std::string> parameter(std::string_view field, std::string_view na
 }  // namespace
 
 std::string boundary_of(std::string_view content_type) {
-  if (!same_word(trim(content_type.substr(0, content_type.find(';'))), "multipart/form-data")) return {};
+  if (!same_word(without_blanks(content_type.substr(0, content_type.find(';'))), "multipart/form-data"))
+    return {};
   const auto boundary = parameter(content_type, "boundary");
   if (!boundary || boundary->empty() || boundary->size() > 70) return {};
   for (const char c : *boundary)
@@ -134,7 +131,8 @@ std::optional<Problem> MultipartReader::read_head(std::string_view head) {
     const std::string_view line = head.substr(0, end);
     head = end == std::string_view::npos ? std::string_view{} : head.substr(end + 2);
     const auto colon = line.find(':');
-    if (colon == std::string_view::npos || !same_word(trim(line.substr(0, colon)), "content-disposition"))
+    if (colon == std::string_view::npos ||
+        !same_word(without_blanks(line.substr(0, colon)), "content-disposition"))
       continue;
     const auto name = parameter(line.substr(colon + 1), "name");
     if (!name) break;
