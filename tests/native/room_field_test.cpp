@@ -8,7 +8,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "compute/scene/triangle_tree.h"
@@ -41,7 +40,7 @@ double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 struct Scene {
   Scene(const Mesh& mockup, const Mesh& tool)
-      : geometry(std::move(*build_geometry(mockup, tool, {}))),
+      : geometry(*build_geometry(mockup, tool, {})),
         tree(TriangleTree::make(
             geometry.mockup, [] { return true; }, kTriangleCollapsed)),
         field(RoomField::of(geometry, tree)) {}
