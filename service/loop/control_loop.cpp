@@ -79,8 +79,10 @@ PoseSample ControlTick::sense(std::int64_t tick) noexcept {
 }
 
 const TickRecord& ControlTick::act(const LawResult* fresh) noexcept {
-  // The gate closes on such a result (restart_fade), so nothing is lost with what the law knew.
-  if (fresh != nullptr && fresh->field != field_) take_profile(fresh->field);
+  if (fresh != nullptr && fresh->field != field_) {
+    device_.restart_fade();  // another law and another spring: from zero force
+    take_profile(fresh->field);
+  }
   Wrench wrench = law_.step(pose_, fresh);
   if (law_.jumped()) {  // the device homed, or slipped
     device_.restart_fade();

@@ -94,10 +94,10 @@ struct SessionSummary {
   std::uint64_t watchdog_ticks = 0;         ///< ticks without a fresh result for longer than the watchdog
   std::uint64_t saturated_ticks = 0;        ///< ticks where a device limit shortened force or torque
   std::uint64_t plan_changes = 0;           ///< in mid-run
-  /// Profiles that the run went over to.
+  /// Profiles that the run went over to: the first CollisionFrame::kToldChanges.
   struct Changed {
-    std::int64_t tick;  ///< of the first pose answered in it
-    std::string profile, law;
+    std::int64_t tick;         ///< of the first pose answered in it
+    std::string profile, law;  ///< as SessionSummary's
   };
   std::vector<Changed> profile_changes;
   std::uint64_t dropped_ticks = 0,

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "model/lattice/screw.h"
+#include "service/queries/query_json.h"
 #include "service/queries/touched_parts.h"
 
 namespace palpate {
@@ -29,8 +30,7 @@ Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backen
   if (poses.empty()) return bad_value("the path has no pose, so nothing was examined");
   const SceneGeometry& geometry = scene.geometry;
   const double step = geometry.lattice.step_m;
-  const std::int32_t within =
-      within_m ? static_cast<std::int32_t>(std::min(*within_m / step, 0x1p30)) : INT32_MAX - 2;
+  const std::int32_t within = within_steps(geometry, within_m);
   const TouchedParts named(geometry);
   PathReport out;
   out.rule = rule;
