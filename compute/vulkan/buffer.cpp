@@ -28,7 +28,7 @@ Result<VulkanBuffer> VulkanBuffer::create(VulkanDevice& device, const char* what
 Result<VulkanBuffer> VulkanBuffer::alias(VulkanDevice& device, const VulkanBuffer& of) {
   if (!of.pages_ || !device.shares_memory())
     return Error{ErrorCode::kInternal, "a buffer of " + device.name() + " can't be shared"};
-  return make(device, "a shared buffer", of.bytes_, BufferKind::kDevice, &of);
+  return make(device, "a shared buffer", of.bytes_, of.kind_, &of);
 }
 
 Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, std::uint64_t bytes,
@@ -56,8 +56,8 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   create.pNext = shares ? &external : nullptr;
   create.size = bytes + (device.guarded ? BufferGuard::kBytes : 0);
   create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   create.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
   if (const VkResult r = vkCreateBuffer(device.handle(), &create, nullptr, &out.buffer_); r != VK_SUCCESS)
     return vulkan_error("vkCreateBuffer", r);
@@ -66,7 +66,7 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   vkGetBufferMemoryRequirements(device.handle(), out.buffer_, &needs);
   const VkMemoryPropertyFlags host =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool map = kind != BufferKind::kDevice || device.unified();
+  const bool map = (kind != BufferKind::kDevice && kind != BufferKind::kTexels) || device.unified();
   int type = -1;
   if (!map) {
     type = device.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
@@ -112,6 +112,15 @@ Result<VulkanBuffer> VulkanBuffer::make(VulkanDevice& device, const char* what, 
   if (const VkResult r = vkBindBufferMemory(device.handle(), out.buffer_, out.memory_, before);
       r != VK_SUCCESS)
     return vulkan_error("vkBindBufferMemory", r);
+  if (device.texels()) {
+    VkBufferViewCreateInfo view{};
+    view.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+    view.buffer = out.buffer_;
+    view.format = kind == BufferKind::kTexels ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT;
+    view.range = kind == BufferKind::kTexels ? bytes / 16 * 16 : bytes;
+    if (const VkResult r = vkCreateBufferView(device.handle(), &view, nullptr, &out.texels_); r != VK_SUCCESS)
+      return vulkan_error("vkCreateBufferView", r);
+  }
   if (map)
     if (const VkResult r = vkMapMemory(device.handle(), out.memory_, 0, VK_WHOLE_SIZE, 0, &out.mapped_);
         r != VK_SUCCESS)
@@ -128,6 +137,7 @@ VulkanBuffer::~VulkanBuffer() {
   if (device_ == nullptr) return;
   guard_.reset();
   device_->allocated -= counted_;
+  vkDestroyBufferView(device_->handle(), texels_, nullptr);
   vkDestroyBuffer(device_->handle(), buffer_, nullptr);
   vkFreeMemory(device_->handle(), memory_, nullptr);
 }
@@ -137,6 +147,7 @@ VulkanBuffer::VulkanBuffer(VulkanBuffer&& other) noexcept { *this = std::move(ot
 VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(buffer_, other.buffer_);
+  std::swap(texels_, other.texels_);
   std::swap(memory_, other.memory_);
   std::swap(kind_, other.kind_);
   std::swap(bytes_, other.bytes_);

@@ -14,6 +14,7 @@ namespace palpate {
 /// Where a buffer lives. On unified devices (lavapipe) all three are the same mapped memory.
 enum class BufferKind {
   kDevice,    ///< fast for shaders; mapped only on unified devices
+  kTexels,    ///< the same, which shaders see in texels of four words
   kUpload,    ///< written by the host with write(), read by shaders; the host can't read it: on a GPU that
               ///< takes a microsecond a word
   kReadback,  ///< written by shaders or copies, read by the host with as()
@@ -39,7 +40,10 @@ class VulkanBuffer {
   VulkanBuffer& operator=(const VulkanBuffer&) = delete;
 
   VkBuffer handle() const { return buffer_; }
+  /// The whole as texels, of a word but for kTexels; null where VulkanDevice::texels() isn't.
+  VkBufferView texels() const { return texels_; }
   std::uint64_t bytes() const { return bytes_; }
+  BufferKind kind() const { return kind_; }
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
   /// What the host may read in place; null for a kUpload buffer, and for a kDevice buffer of a discrete GPU.
   template <class T>
@@ -56,6 +60,7 @@ class VulkanBuffer {
 
   VulkanDevice* device_ = nullptr;
   VkBuffer buffer_ = VK_NULL_HANDLE;
+  VkBufferView texels_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   BufferKind kind_ = BufferKind::kDevice;
   std::uint64_t bytes_ = 0;

@@ -104,8 +104,8 @@ bool CommandRecorder::bind(const ComputePipeline& pipeline, std::span<const Buff
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
-    writes[i].descriptorType =
-        pipeline.uniform(i) ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    writes[i].descriptorType = pipeline.kinds().of(i);
+    writes[i].pTexelBufferView = &buffers[i].texels;
     writes[i].pBufferInfo = &infos[i];
   }
   if (count > 0)

@@ -18,12 +18,14 @@ namespace palpate {
 
 /// A whole buffer, or a part of one, bound to a shader.
 struct BufferView {
-  BufferView(const VulkanBuffer& whole) : buffer(whole.handle()) {}  // NOLINT(google-explicit-constructor)
+  BufferView(const VulkanBuffer& whole)
+      : buffer(whole.handle()), texels(whole.texels()) {}  // NOLINT(google-explicit-constructor)
   BufferView(const VulkanBuffer& part, std::uint64_t from, std::uint64_t length)
       : buffer(part.handle()), offset(from), bytes(length) {}
   VkBuffer buffer;
   VkDeviceSize offset = 0;
   VkDeviceSize bytes = VK_WHOLE_SIZE;
+  VkBufferView texels = VK_NULL_HANDLE;  ///< of the whole
 };
 
 /// Push constants of a shader that has none.

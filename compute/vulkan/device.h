@@ -58,6 +58,9 @@ class VulkanDevice {
   /// The device is the host's own processor (lavapipe).
   bool processor() const { return processor_; }
 
+  /// Shaders look things up in texel buffers (shaders/lib/frame.glsl): llvmpipe takes a texel in one piece.
+  bool texels() const { return processor_; }
+
   /// Buffers lie in host memory that several devices may import at once (lavapipe): what one has made,
   /// another can use without a copy.
   bool shares_memory() const { return page_ != 0; }

@@ -14,14 +14,13 @@ using MadePipeline = Result<std::shared_ptr<const PipelineObjects>>;
 
 MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
                           std::uint32_t push_bytes, std::span<const SpecConstant> constants,
-                          std::uint32_t uniform) {
+                          BindingKinds kinds) {
   auto out = std::make_shared<PipelineObjects>(device.handle());
   std::vector<VkDescriptorSetLayoutBinding> bindings(buffers);
   for (std::uint32_t i = 0; i < buffers; ++i) {
     bindings[i] = {};
     bindings[i].binding = i;
-    bindings[i].descriptorType =
-        (uniform >> i & 1u) != 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    bindings[i].descriptorType = kinds.of(i);
     bindings[i].descriptorCount = 1;
     bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
   }
@@ -85,9 +84,9 @@ MadePipeline make_objects(VulkanDevice& device, const ShaderCode& code, std::uin
 
 Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const ShaderCode& code,
                                                 std::uint32_t buffers, std::uint32_t push_bytes,
-                                                std::span<const SpecConstant> constants,
-                                                std::uint32_t uniform) {
-  std::vector<std::uint32_t> key{buffers, push_bytes, uniform, static_cast<std::uint32_t>(constants.size())};
+                                                std::span<const SpecConstant> constants, BindingKinds kinds) {
+  std::vector<std::uint32_t> key{buffers, push_bytes, kinds.uniform, kinds.texels,
+                                 static_cast<std::uint32_t>(constants.size())};
   for (const SpecConstant& c : constants) key.insert(key.end(), {c.id, c.value});
   key.insert(key.end(), code.words, code.words + code.bytes / 4);
   std::shared_ptr<PendingPipeline>& kept = device.pipelines[std::move(key)];
@@ -98,16 +97,16 @@ Result<ComputePipeline> ComputePipeline::create(VulkanDevice& device, const Shad
     device.compilers->add(
         [&device, name = code.name,
          words = std::vector<std::uint32_t>(code.words, code.words + code.bytes / 4), buffers, push_bytes,
-         values = std::vector<SpecConstant>(constants.begin(), constants.end()), uniform, promise] {
+         values = std::vector<SpecConstant>(constants.begin(), constants.end()), kinds, promise] {
           promise->set_value(make_objects(device, {name, words.data(), words.size() * 4}, buffers, push_bytes,
-                                          values, uniform));
+                                          values, kinds));
         });
   }
   ComputePipeline out;
   out.made_ = kept;
   out.buffers_ = buffers;
   out.push_bytes_ = push_bytes;
-  out.uniform_ = uniform;
+  out.kinds_ = kinds;
   out.name_ = code.name;
   return out;
 }

@@ -18,6 +18,17 @@ struct SpecConstant {
   std::uint32_t value;
 };
 
+/// How a shader sees its buffers, a bit a binding: as uniform buffers, as texels
+/// (VulkanBuffer::texels()), all others as storage buffers.
+struct BindingKinds {
+  std::uint32_t uniform = 0, texels = 0;
+  VkDescriptorType of(std::uint32_t binding) const {
+    return (uniform >> binding & 1u) != 0  ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+           : (texels >> binding & 1u) != 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                           : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  }
+};
+
 /// What the driver made of one module with one choice of constants.
 struct PipelineObjects {
   VkDevice device = VK_NULL_HANDLE;
@@ -37,7 +48,7 @@ struct PendingPipeline {
 };
 
 /// A compute pipeline whose set 0 is `buffers` buffers, bindings 0 … buffers − 1 (push descriptors), with
-/// `push_bytes` of push constants. Bit i of `uniform`: binding i is a uniform buffer, else a storage buffer.
+/// `push_bytes` of push constants.
 /// Copies share what the driver made; so do all that one device was ever asked for with the same module and
 /// constants, so that a second scene compiles nothing. create() comes back at once: the driver works on while
 /// pipelines are asked for, several at a time, and wait() tells what came of it.
@@ -47,7 +58,7 @@ class ComputePipeline {
   static Result<ComputePipeline> create(VulkanDevice& device, const ShaderCode& code, std::uint32_t buffers,
                                         std::uint32_t push_bytes = 0,
                                         std::span<const SpecConstant> constants = {},
-                                        std::uint32_t uniform = 0);
+                                        BindingKinds kinds = {});
 
   /// Waits until the pipeline is there; makes the compilers begin. An error: the driver refused, or the
   /// module does not fit.
@@ -56,7 +67,7 @@ class ComputePipeline {
   VkPipelineLayout layout() const { return objects().layout; }  ///< likewise
   std::uint32_t buffers() const { return buffers_; }
   std::uint32_t push_bytes() const { return push_bytes_; }
-  bool uniform(std::uint32_t binding) const { return (uniform_ >> binding & 1u) != 0; }
+  BindingKinds kinds() const { return kinds_; }
   const char* name() const { return name_; }
 
  private:
@@ -65,7 +76,7 @@ class ComputePipeline {
   std::shared_ptr<const PendingPipeline> made_;
   std::uint32_t buffers_ = 0;
   std::uint32_t push_bytes_ = 0;
-  std::uint32_t uniform_ = 0;
+  BindingKinds kinds_;
   const char* name_ = "";
 };
 

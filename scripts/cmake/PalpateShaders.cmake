@@ -2,7 +2,7 @@
 #
 # palpate_shaders(palpate_shaders shaders/code.h a.comp b.comp): a static library with one `ShaderCode` a
 # file, named like the file, in namespace palpate::spirv, declared in the header "shaders/code.h" of the build
-# tree. Each module passes spirv-val; depfiles make a change in an included file rebuild what it touches and
+# tree, with its module as it is and as it is with PALPATE_TEXELS. Each module passes spirv-val; depfiles make a change in an included file rebuild what it touches and
 # nothing else.
 
 find_program(PALPATE_GLSLANG glslangValidator REQUIRED)
@@ -17,12 +17,16 @@ function(palpate_shaders target header)
     get_filename_component(path "${file}" ABSOLUTE)
     get_filename_component(name "${file}" NAME_WE)
     set(spirv "${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.spv")
+    set(texels "${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.texels.spv")
     set(source "${generated}/${name}.cpp")
-    add_custom_command(OUTPUT "${spirv}" "${source}"
+    add_custom_command(OUTPUT "${spirv}" "${texels}" "${source}"
       COMMAND "${PALPATE_GLSLANG}" --quiet --target-env vulkan1.3 "-I${PROJECT_SOURCE_DIR}" --depfile
       "${spirv}.d" -o "${spirv}" "${path}"
+      COMMAND "${PALPATE_GLSLANG}" --quiet --target-env vulkan1.3 "-I${PROJECT_SOURCE_DIR}" -DPALPATE_TEXELS
+      -o "${texels}" "${path}"
       COMMAND "${PALPATE_SPIRV_VAL}" --target-env vulkan1.3 --scalar-block-layout "${spirv}"
-      COMMAND "${CMAKE_COMMAND}" -D "spirv=${spirv}" -D "source=${source}" -D "name=${name}" -D
+      COMMAND "${PALPATE_SPIRV_VAL}" --target-env vulkan1.3 --scalar-block-layout "${texels}"
+      COMMAND "${CMAKE_COMMAND}" -D "spirv=${spirv}" -D "texels=${texels}" -D "source=${source}" -D "name=${name}" -D
       "header=${header}" -P "${PALPATE_EMBED_SCRIPT}"
       DEPENDS "${path}" "${PALPATE_EMBED_SCRIPT}" DEPFILE "${spirv}.d"
       COMMENT "Compiling shader ${name}" VERBATIM)

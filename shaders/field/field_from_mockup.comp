@@ -14,24 +14,24 @@ CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
 READ(kBindMockupPoints, FieldPoint, mockup_points);
-READ(kBindMockupInfo, uint32_t, mockup_info);
-READ(kBindMockupNormals, ivec3, mockup_normals);
-READ(kBindMockupPatches, uint32_t, mockup_patches);
+WORDS(kBindMockupInfo, uint32_t, mockup_info)
+TRIPLES(kBindMockupNormals, ivec3, mockup_normals)
+WORDS(kBindMockupPatches, uint32_t, mockup_patches)
 READ(kBindStaticState, uint32_t, static_state);
 READ(kBindStaticSlot, uint32_t, static_slot);
-READ(kBindToolRecords, uint64_t, tool_records);
-READ(kBindToolVertices, ivec3, body_vertices);
-READ(kBindToolTriangles, uvec3, body_triangles);
-READ(kBindToolInfo, uint32_t, body_info);
-READ(kBindToolNormals, ivec3, body_normals);
-READ(kBindToolTree, uint32_t, body_tree);
-READ(kBindFineBrickSlot, uint32_t, body_brick_slot);
-READ(kBindFineBricks, Brick, body_bricks);
-READ(kBindFineListBegin, uint32_t, body_list_begin);
-READ(kBindFineListTriangles, uint32_t, body_list);
-READ(kBindFineShells, int32_t, body_shells);
-READ(kBindFinePlaces, uint32_t, fine_places);
-READ(kBindFineExit, uint32_t, fine_exit);
+TEXELS(kBindToolRecords, tool_records)
+TRIPLES(kBindToolVertices, ivec3, body_vertices)
+TRIPLES(kBindToolTriangles, uvec3, body_triangles)
+WORDS(kBindToolInfo, uint32_t, body_info)
+TRIPLES(kBindToolNormals, ivec3, body_normals)
+TEXELS(kBindToolTree, body_tree)
+WORDS(kBindFineBrickSlot, uint32_t, body_brick_slot)
+WORDS(kBindFineBricks, uint32_t, body_bricks)
+WORDS(kBindFineListBegin, uint32_t, body_list_begin)
+WORDS(kBindFineListTriangles, uint32_t, body_list)
+WORDS(kBindFineShells, int32_t, body_shells)
+WORDS(kBindFinePlaces, uint32_t, fine_places)
+WORDS(kBindFineExit, uint32_t, fine_exit)
 EDIT(kBindFieldWork, int64_t, field_work);
 EDIT(kBindCarrierWork, int64_t, carrier_work);
 READ(kBindIgnored, uint32_t, ignored);
@@ -79,13 +79,13 @@ bool push_of(Asked asked, Depth depth, out Push push) {
   const uint32_t entry = asked.entry, id = asked.id, weight = asked.weight;
   if (depth.triangle == kNone || is_ignored(id)) return false;
   push.at = asked.point;
-  push.against = -turned(body_normals[depth.triangle]);
-  push.sheet = (mockup_info[id] & kInfoSheet) != 0u;
-  push.along = push.sheet ? push.against : mockup_normals[id];
+  push.against = -turned(body_normals(depth.triangle));
+  push.sheet = (mockup_info(id) & kInfoSheet) != 0u;
+  push.along = push.sheet ? push.against : mockup_normals(id);
   push.depth = uint32_t(depth.steps);
   push.weight = weight;
-  const bool thin = (mockup_info[id] & kInfoThin) != 0u,
-             in_thin = (body_info[depth.triangle] & kInfoThin) != 0u;
+  const bool thin = (mockup_info(id) & kInfoThin) != 0u,
+             in_thin = (body_info(depth.triangle) & kInfoThin) != 0u;
   push.counted = push.sheet || (thin && !in_thin) ? weight
                  : thin == in_thin               ? weight >> 1
                                                  : 0u;
@@ -105,4 +105,5 @@ void main() {
   Push push;
   const bool pushes = counts && speaks() && push_of(asked, depth, push);
   add_pushes(pushes, push);
+  tell_spent();
 }

@@ -15,22 +15,22 @@ CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
 READ(kBindToolPoints, FieldPoint, tool_points);
-READ(kBindToolInfo, uint32_t, tool_info);
-READ(kBindToolNormals, ivec3, tool_normals);
-READ(kBindToolVertices, ivec3, tool_vertices);
-READ(kBindToolTriangles, uvec3, tool_triangles);
+WORDS(kBindToolInfo, uint32_t, tool_info)
+TRIPLES(kBindToolNormals, ivec3, tool_normals)
+TRIPLES(kBindToolVertices, ivec3, tool_vertices)
+TRIPLES(kBindToolTriangles, uvec3, tool_triangles)
 READ(kBindMobileState, uint32_t, mobile_state);
-READ(kBindMockupVertices, ivec3, body_vertices);
-READ(kBindMockupTriangles, uvec3, body_triangles);
-READ(kBindMockupInfo, uint32_t, body_info);
-READ(kBindMockupNormals, ivec3, body_normals);
-READ(kBindMockupTree, uint32_t, body_tree);
-READ(kBindMockupPatches, uint32_t, mockup_patches);
-READ(kBindMockupBrickSlot, uint32_t, body_brick_slot);
-READ(kBindMockupBricks, Brick, body_bricks);
-READ(kBindMockupListBegin, uint32_t, body_list_begin);
-READ(kBindMockupListTriangles, uint32_t, body_list);
-READ(kBindMockupShells, int32_t, body_shells);
+TRIPLES(kBindMockupVertices, ivec3, body_vertices)
+TRIPLES(kBindMockupTriangles, uvec3, body_triangles)
+WORDS(kBindMockupInfo, uint32_t, body_info)
+TRIPLES(kBindMockupNormals, ivec3, body_normals)
+TEXELS(kBindMockupTree, body_tree)
+WORDS(kBindMockupPatches, uint32_t, mockup_patches)
+WORDS(kBindMockupBrickSlot, uint32_t, body_brick_slot)
+WORDS(kBindMockupBricks, uint32_t, body_bricks)
+WORDS(kBindMockupListBegin, uint32_t, body_list_begin)
+WORDS(kBindMockupListTriangles, uint32_t, body_list)
+WORDS(kBindMockupShells, int32_t, body_shells)
 EDIT(kBindFieldWork, int64_t, field_work);
 EDIT(kBindCarrierWork, int64_t, carrier_work);
 READ(kBindIgnored, uint32_t, ignored);
@@ -61,7 +61,7 @@ int32_t inside_mockup(FieldPoint work) {
   // What touches nothing is on one side of the mock-up, with its first corner.
   const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
   return inside_mockup(hit ? work.point
-                           : world_from_tool(tool_vertices[tool_triangles[mobile_id(work.triangle)].x]));
+                           : world_from_tool(tool_vertices(tool_triangles(mobile_id(work.triangle)).x)));
 }
 
 // False: nothing pushes.
@@ -69,13 +69,13 @@ bool push_of(FieldPoint work, Depth depth, out Push push) {
   const uint32_t mobile = mobile_id(work.triangle);
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;
-  push.against = body_normals[depth.triangle];
-  push.sheet = !INSIDE || (tool_info[mobile] & kInfoSheet) != 0u;
-  push.along = push.sheet ? push.against : -turned(tool_normals[mobile]);
+  push.against = body_normals(depth.triangle);
+  push.sheet = !INSIDE || (tool_info(mobile) & kInfoSheet) != 0u;
+  push.along = push.sheet ? push.against : -turned(tool_normals(mobile));
   push.depth = uint32_t(depth.steps);
   push.weight = work.weight;
-  const bool thin = (tool_info[mobile] & kInfoThin) != 0u,
-             in_thin = (body_info[depth.triangle] & kInfoThin) != 0u;
+  const bool thin = (tool_info(mobile) & kInfoThin) != 0u,
+             in_thin = (body_info(depth.triangle) & kInfoThin) != 0u;
   push.counted = push.sheet || (thin && !in_thin) ? work.weight
                  : thin == in_thin               ? work.weight >> 1
                                                  : 0u;
@@ -99,4 +99,5 @@ void main() {
   Push push;
   const bool pushes = inside && speaks() && push_of(work, depth, push);
   add_pushes(pushes, push);
+  tell_spent();
 }

@@ -17,14 +17,14 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
 
 READ(kBindSamples, FrameSample, frame_samples);
-READ(kBindMockupInfo, uint32_t, mockup_info);
-READ(kBindMockupWeights, uint32_t, mockup_weights);
-READ(kBindMockupLevels, uint32_t, mockup_levels);
+WORDS(kBindMockupInfo, uint32_t, mockup_info)
+WORDS(kBindMockupWeights, uint32_t, mockup_weights)
+WORDS(kBindMockupLevels, uint32_t, mockup_levels)
 READ(kBindMockupExtras, ExtraSample, mockup_extras);
-READ(kBindToolVertices, ivec3, tool_vertices);
-READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolInfo, uint32_t, tool_info);
-READ(kBindToolWeights, uint32_t, tool_weights);
+TRIPLES(kBindToolVertices, ivec3, tool_vertices)
+TRIPLES(kBindToolTriangles, uvec3, tool_triangles)
+WORDS(kBindToolInfo, uint32_t, tool_info)
+WORDS(kBindToolWeights, uint32_t, tool_weights)
 READ(kBindToolExtras, ExtraSample, tool_extras);
 EDIT(kBindCarrierWork, int64_t, carrier_work);
 EDIT(kBindMockupPoints, FieldPoint, mockup_points);
@@ -32,7 +32,7 @@ EDIT(kBindFieldTiles, FieldTile, field_tiles);
 
 #include "shaders/lib/extra_samples.glsl"
 #include "shaders/lib/sample_levels.glsl"
-SAMPLE_WEIGHT(mockup_weight, mockup_level, mockup_levels, scene.mockup.triangles)
+SAMPLE_WEIGHT(mockup_weight, mockup_levels, scene.mockup.triangles)
 EXTRA_SAMPLES(mockup, mockup_extras)
 EXTRA_SAMPLES(tool, tool_extras)
 #include "shaders/lib/group_count.glsl"
@@ -58,8 +58,8 @@ void list_extras(int32_t body, uint32_t entry, uvec2 extras) {
 
 // Of the cells that reach into the triangle's box; they are decided one by one later.
 void list_tiles(uint32_t mobile, uint32_t entry, uint32_t info) {
-  const uvec3 corners = tool_triangles[mobile];
-  const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
+  const uvec3 corners = tool_triangles(mobile);
+  const ivec3 a = tool_vertices(corners.x), b = tool_vertices(corners.y), c = tool_vertices(corners.z);
   const uint32_t axis = info >> kInfoAxisShift & 3u, u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
   const ivec3 low = min(min(a, b), c), high = max(max(a, b), c);
   const int32_t s = scene.sample_spacing;
@@ -87,7 +87,7 @@ void take_static(uint32_t slot) {
   if (!in_contact()) return;
   if (CARRIERS)
     for (uint32_t i = 0u; i < kCarrierWords; ++i) carrier_work[kCarrierWords * slot + i] = 0l;
-  if (INSIDE && (mockup_info[id] & kInfoHasExtra) != 0u)
+  if (INSIDE && (mockup_info(id) & kInfoHasExtra) != 0u)
     list_extras(1, entry, mockup_extras_of(id, scene.mockup_extras));
 }
 
@@ -96,9 +96,9 @@ void take_mobile(uint32_t place) {
   take_pose(mobile_pose(entry));
   name_mobile(place);
   if (!in_contact()) return;
-  const uint32_t mobile = mobile_id(entry), info = tool_info[mobile];
+  const uint32_t mobile = mobile_id(entry), info = tool_info(mobile);
   if ((info & kInfoHasExtra) != 0u) list_extras(0, entry, tool_extras_of(mobile, scene.tool_extras));
-  if (tool_weights[mobile] != 0u) list_tiles(mobile, entry, info);
+  if (tool_weights(mobile) != 0u) list_tiles(mobile, entry, info);
 }
 
 void take_sample(uint32_t i) {
@@ -106,10 +106,10 @@ void take_sample(uint32_t i) {
   const uint32_t entry = work.static_id, id = static_id(entry);
   take_pose(static_pose(entry));
   if (!in_contact()) return;
-  const uint32_t axis = mockup_info[id] >> kInfoAxisShift & 3u;
+  const uint32_t axis = mockup_info(id) >> kInfoAxisShift & 3u;
   const ivec2 ij =
       cell_of_sample(ivec2(work.point[(axis + 1u) % 3u], work.point[(axis + 2u) % 3u]), scene.sample_spacing);
-  const uint32_t weight = uint32_t(mockup_weight(id, mockup_weights[id], ij) >> 6);
+  const uint32_t weight = uint32_t(mockup_weight(id, mockup_weights(id), ij, mockup_level()) >> 6);
   if (weight == 0u) return;
   const uint32_t at = take_room(kListMockupPoints, 1u);
   if (at >= frame_lists[kListMockupPoints].capacity) return;
@@ -122,4 +122,5 @@ void main() {
   if (i < list_count(kListContactStatics)) take_static(i);
   if (i < list_count(kListContactMobiles)) take_mobile(i);
   if (INSIDE && i < list_count(kListSamples)) take_sample(i);
+  tell_spent();
 }

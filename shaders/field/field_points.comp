@@ -16,14 +16,14 @@ CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
 READ(kBindFieldTiles, FieldTile, field_tiles);
-READ(kBindToolVertices, ivec3, tool_vertices);
-READ(kBindToolTriangles, uvec3, tool_triangles);
-READ(kBindToolInfo, uint32_t, tool_info);
-READ(kBindToolWeights, uint32_t, tool_weights);
-READ(kBindToolLevels, uint32_t, tool_levels);
+TRIPLES(kBindToolVertices, ivec3, tool_vertices)
+TRIPLES(kBindToolTriangles, uvec3, tool_triangles)
+WORDS(kBindToolInfo, uint32_t, tool_info)
+WORDS(kBindToolWeights, uint32_t, tool_weights)
+WORDS(kBindToolLevels, uint32_t, tool_levels)
 READ(kBindMobileState, uint32_t, mobile_state);
-READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slots);
-READ(kBindMockupBricks, Brick, mockup_bricks);
+WORDS(kBindMockupBrickSlot, uint32_t, mockup_brick_slots)
+WORDS(kBindMockupBricks, uint32_t, mockup_bricks)
 READ(kBindMockupExtras, ExtraSample, mockup_extras);
 READ(kBindToolExtras, ExtraSample, tool_extras);
 EDIT(kBindToolPoints, FieldPoint, tool_points);
@@ -42,7 +42,7 @@ GROUP_COUNTS(kBindPushedGroups, pushed_groups)
 #define PARTITION_BRICKS mockup_bricks
 #include "shaders/lib/partition.glsl"
 #include "shaders/lib/sample_levels.glsl"
-SAMPLE_WEIGHT(tool_weight, tool_level, tool_levels, scene.tool.triangles)
+SAMPLE_WEIGHT(tool_weight, tool_levels, scene.tool.triangles)
 
 void list_tool_point(FieldPoint point) {
   const uint32_t at = take_room(kListToolPoints, 1u);
@@ -51,13 +51,13 @@ void list_tool_point(FieldPoint point) {
   if (begins_group(at, 1u)) grow_pushed_groups_deep(kGroupsToolPush, groups_to(at + 1u), LANES);
 }
 
-void take_tool_extra(FieldTile tile, uint32_t i) {
-  const uint32_t weight = uint32_t(extra_weight(tool_extras[i].weights, tool_level()) >> 6);
+void take_tool_extra(FieldTile tile, uint32_t i, uint32_t level) {
+  const uint32_t weight = uint32_t(extra_weight(tool_extras[i].weights, level) >> 6);
   if (weight != 0u) list_tool_point(FieldPoint(world_from_tool(tool_extras[i].point), tile.triangle, weight));
 }
 
-void take_mockup_extra(FieldTile tile, uint32_t i) {
-  const uint32_t weight = uint32_t(extra_weight(mockup_extras[i].weights, mockup_level()) >> 6);
+void take_mockup_extra(FieldTile tile, uint32_t i, uint32_t level) {
+  const uint32_t weight = uint32_t(extra_weight(mockup_extras[i].weights, level) >> 6);
   if (weight == 0u) return;
   const uint32_t at = take_room(kListMockupPoints, 1u);
   if (at >= frame_lists[kListMockupPoints].capacity) return;
@@ -65,37 +65,37 @@ void take_mockup_extra(FieldTile tile, uint32_t i) {
   if (begins_group(at, 1u)) grow_pushed_groups_deep(kGroupsMockupPush, groups_to(at + 1u), LANES);
 }
 
-void take(FieldTile tile, uint32_t mobile, SampledTriangle triangle, uint32_t cell) {
-  const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
-              g = sample_of_cell(ij, scene.sample_spacing);
-  if (!grid_point_inside(triangle, g)) return;
-  const uint32_t weight = uint32_t(tool_weight(mobile, tool_weights[mobile], ij) >> 6);
-  if (weight == 0u) return;
-  const ivec3 p = world_from_tool(sample_point(triangle, g));
-  const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
-  if (mockup_class_of(mockup_voxel_of(hit ? p : world_from_tool(triangle.a))) == kVoxelExternal) return;
-  list_tool_point(FieldPoint(p, tile.triangle, weight));
-}
-
 void take_grid(FieldTile tile) {
   const uint32_t mobile = mobile_id(tile.triangle);
   take_pose(mobile_pose(tile.triangle));
-  const uvec3 corners = tool_triangles[mobile];
-  const ivec3 a = tool_vertices[corners.x], b = tool_vertices[corners.y], c = tool_vertices[corners.z];
-  const int32_t axis = int32_t(tool_info[mobile] >> kInfoAxisShift & 3u);
+  const uvec3 corners = tool_triangles(mobile);
+  const ivec3 a = tool_vertices(corners.x), b = tool_vertices(corners.y), c = tool_vertices(corners.z);
+  const int32_t axis = int32_t(tool_info(mobile) >> kInfoAxisShift & 3u), spacing = scene.sample_spacing;
   const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
-  for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end; cell += kFieldTileLanes)
-    take(tile, mobile, triangle, cell);
+  const uint32_t base = tool_weights(mobile), level = tool_level();
+  const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
+  const ivec3 corner = world_from_tool(a);
+  for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end; cell += kFieldTileLanes) {
+    const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
+                g = sample_of_cell(ij, spacing);
+    if (!grid_point_inside(triangle, g)) continue;
+    const uint32_t weight = uint32_t(tool_weight(mobile, base, ij, level) >> 6);
+    if (weight == 0u) continue;
+    const ivec3 p = world_from_tool(sample_point(triangle, g));
+    if (mockup_class_of(mockup_voxel_of(hit ? p : corner)) == kVoxelExternal) continue;
+    list_tool_point(FieldPoint(p, tile.triangle, weight));
+  }
 }
 
 void take_extras(FieldTile tile) {
   const bool of_mockup = tile.first_u != 0;
   take_pose(of_mockup ? static_pose(tile.triangle) : mobile_pose(tile.triangle));
+  const uint32_t level = of_mockup ? mockup_level() : tool_level();
   for (uint32_t i = tile.begin + flat_invocation() % kFieldTileLanes; i < tile.end; i += kFieldTileLanes)
     if (of_mockup)
-      take_mockup_extra(tile, i);
+      take_mockup_extra(tile, i, level);
     else
-      take_tool_extra(tile, i);
+      take_tool_extra(tile, i, level);
 }
 
 void main() {

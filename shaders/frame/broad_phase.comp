@@ -32,7 +32,6 @@ READ(kBindSampleBegin, uint32_t, sample_begin);
 EDIT(kBindNearRuns, NearRun, near_runs);
 EDIT(kBindSampleChunks, SampleChunk, sample_chunks);
 
-#include "shaders/lib/budget.glsl"
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/broad_phase/turned_box.glsl"
 #include "shaders/lib/broad_phase/occupied.glsl"
@@ -181,4 +180,5 @@ void main() {
     cull_tool(lane, group);
   else if (SAMPLES != 0u)
     cull_samples(lane, group - tool_groups);
+  tell_spent();
 }

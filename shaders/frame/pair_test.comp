@@ -15,11 +15,11 @@ CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
-READ(kBindMockupVertices, ivec3, mockup_vertices);
-READ(kBindMockupTriangles, uvec3, mockup_triangles);
-READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
-READ(kBindListBoxes, uint32_t, list_boxes);
-READ(kBindToolRecords, uint64_t, tool_records);
+TRIPLES(kBindMockupVertices, ivec3, mockup_vertices)
+TRIPLES(kBindMockupTriangles, uvec3, mockup_triangles)
+WORDS(kBindMockupListTriangles, uint32_t, mockup_list_triangles)
+WORDS(kBindListBoxes, uint32_t, list_boxes)
+TEXELS(kBindToolRecords, tool_records)
 READ(kBindPairChunks, PairChunk, pair_chunks);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
@@ -30,7 +30,6 @@ EDIT(kBindPairTable, uint64_t, pair_table);
 EDIT(kBindPairSlots, uint32_t, pair_slots);
 EDIT(kBindPairs, ContactPair, pairs);
 
-#include "shaders/lib/budget.glsl"
 #include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/tool_record.glsl"
@@ -139,11 +138,11 @@ void decide(uint64_t work) {
   const uint32_t id = uint32_t(work), lane = uint32_t(work >> 32), place = places[lane];
   go_on_for(lane);
   if (!is_new(id, place)) return;
-  const uvec3 s = mockup_triangles[id];
-  if (!triangles_meet(Triangle(mockup_vertices[s.x], mockup_vertices[s.y], mockup_vertices[s.z]),
+  const uvec3 s = mockup_triangles(id);
+  if (!triangles_meet(Triangle(mockup_vertices(s.x), mockup_vertices(s.y), mockup_vertices(s.z)),
                       Triangle(corner_at(lane, 0u), corner_at(lane, 1u), corner_at(lane, 2u))))
     return;
-  const uint32_t mobile = uint32_t(tool_records[6u * place + 1u] >> 32);
+  const uint32_t mobile = record_id(place);
   mark_static(id, kStaticHit);
   mark_mobile(mobile, kMobileHit);
   if (BATCH) {   // nobody asks which
@@ -163,9 +162,9 @@ void main() {
     barrier();
     const uint32_t last = min(entry + PAIR_CHUNK, end);
     for (; entry < last && !spent(1u); ++entry) {
-      const uint64_t work = uint64_t(mockup_list_triangles[entry]) | uint64_t(lane) << 32;
+      const uint64_t work = uint64_t(mockup_list_triangles(entry)) | uint64_t(lane) << 32;
       if (is_first) found[kRoom - 1u - atomicAdd(mark_count, 1u)] = work;
-      if (may_meet(list_boxes[entry])) found[atomicAdd(meet_count, 1u)] = work;
+      if (may_meet(list_boxes(entry))) found[atomicAdd(meet_count, 1u)] = work;
     }
     if (entry < end && loop_budget < kLoopBudget) unfinished = 1u;
     barrier();

@@ -13,10 +13,10 @@ CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
-READ(kBindFineBrickSlot, uint32_t, fine_brick_slot);
-READ(kBindFineBricks, Brick, fine_bricks);
+WORDS(kBindFineBrickSlot, uint32_t, fine_brick_slot)
+WORDS(kBindFineBricks, uint32_t, fine_bricks)
 READ(kBindSamplePoints, uint32_t, sample_points);
-READ(kBindSampleIds, uint32_t, sample_ids);
+WORDS(kBindSampleIds, uint32_t, sample_ids)
 READ(kBindSampleChunks, SampleChunk, sample_chunks);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
@@ -25,7 +25,6 @@ EDIT(kBindOpenSamples, FrameSample, open_samples);
 EDIT(kBindOpenPoses, uint32_t, open_poses);
 EDIT(kBindSamples, FrameSample, samples);
 
-#include "shaders/lib/budget.glsl"
 #include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/static_mark.glsl"
@@ -70,7 +69,7 @@ void begin(uint32_t lane, uint32_t item) {
 FrameSample sample_of(uint64_t work) {
   const uint32_t i = uint32_t(work), of = 3u * uint32_t(work >> 32);
   go_on_for(uint32_t(work >> 32));
-  return FrameSample(ivec3(lows[of], lows[of + 1u], lows[of + 2u]) + point_at(i), sample_ids[i]);
+  return FrameSample(ivec3(lows[of], lows[of + 1u], lows[of + 2u]) + point_at(i), sample_ids(i));
 }
 
 void take(FrameSample sample_) {

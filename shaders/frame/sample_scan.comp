@@ -12,12 +12,12 @@ CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
-READ(kBindMockupVertices, ivec3, mockup_vertices);
-READ(kBindMockupTriangles, uvec3, mockup_triangles);
-READ(kBindMockupInfo, uint32_t, mockup_info);
-READ(kBindMockupListTriangles, uint32_t, mockup_list_triangles);
-READ(kBindFineBrickSlot, uint32_t, tool_brick_slot);
-READ(kBindFineBricks, Brick, tool_bricks);
+TRIPLES(kBindMockupVertices, ivec3, mockup_vertices)
+TRIPLES(kBindMockupTriangles, uvec3, mockup_triangles)
+WORDS(kBindMockupInfo, uint32_t, mockup_info)
+WORDS(kBindMockupListTriangles, uint32_t, mockup_list_triangles)
+WORDS(kBindFineBrickSlot, uint32_t, tool_brick_slot)
+WORDS(kBindFineBricks, uint32_t, tool_bricks)
 READ(kBindSampleChunks, SampleChunk, sample_chunks);
 EDIT(kBindStaticState, uint32_t, static_state);
 EDIT(kBindStaticSlot, uint32_t, static_slot);
@@ -66,13 +66,13 @@ void decide(uint32_t item) {
   const ivec3 low = scene.mockup.grid.origin + scene.mockup.grid.size * work.voxel;
   const ivec3 high = low + scene.mockup.grid.size - 1;   // the last lattice point of the half-open cube
   for (uint32_t i = work.begin; i < work.end; ++i) {
-    const uint32_t id = mockup_list_triangles[i];
-    const uvec3 s = mockup_triangles[id];
+    const uint32_t id = mockup_list_triangles(i);
+    const uvec3 s = mockup_triangles(id);
     SampledTriangle t;
-    t.a = mockup_vertices[s.x];
-    t.b = mockup_vertices[s.y];
-    t.c = mockup_vertices[s.z];
-    t.axis = int(mockup_info[id] >> kInfoAxisShift & 3u);
+    t.a = mockup_vertices(s.x);
+    t.b = mockup_vertices(s.y);
+    t.c = mockup_vertices(s.z);
+    t.axis = int(mockup_info(id) >> kInfoAxisShift & 3u);
     t.normal = raw_normal(t.a, t.b, t.c);
     if (all(greaterThanEqual(t.a, low)) && all(lessThanEqual(t.a, high))) probe(t.a, id);
     // Cells that reach into the voxel and into the triangle's box; at most 64 an axis, as a voxel is at most

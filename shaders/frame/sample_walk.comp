@@ -13,17 +13,17 @@ CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
-READ(kBindToolRecords, uint64_t, tool_records);
-READ(kBindToolVertices, ivec3, body_vertices);
-READ(kBindToolTriangles, uvec3, body_triangles);
-READ(kBindToolInfo, uint32_t, body_info);
-READ(kBindFineBrickSlot, uint32_t, body_brick_slot);
-READ(kBindFineBricks, Brick, body_bricks);
-READ(kBindFineListBegin, uint32_t, body_list_begin);
-READ(kBindFineListTriangles, uint32_t, body_list);
-READ(kBindFineShells, int32_t, body_shells);
-READ(kBindFinePlaces, uint32_t, fine_places);
-READ(kBindFineExit, uint32_t, fine_exit);
+TEXELS(kBindToolRecords, tool_records)
+TRIPLES(kBindToolVertices, ivec3, body_vertices)
+TRIPLES(kBindToolTriangles, uvec3, body_triangles)
+WORDS(kBindToolInfo, uint32_t, body_info)
+WORDS(kBindFineBrickSlot, uint32_t, body_brick_slot)
+WORDS(kBindFineBricks, uint32_t, body_bricks)
+WORDS(kBindFineListBegin, uint32_t, body_list_begin)
+WORDS(kBindFineListTriangles, uint32_t, body_list)
+WORDS(kBindFineShells, int32_t, body_shells)
+WORDS(kBindFinePlaces, uint32_t, fine_places)
+WORDS(kBindFineExit, uint32_t, fine_exit)
 READ(kBindOpenSamples, ivec4, open_samples);
 READ(kBindOpenPoses, uint32_t, open_poses);
 EDIT(kBindStaticState, uint32_t, static_state);
@@ -63,4 +63,5 @@ void main() {
   }
   sum = team_sum(sum);
   if (there && speaks() && body_says_inside(CLOSED, sum)) take(work);
+  tell_spent();
 }

@@ -13,10 +13,10 @@ CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/batch/batch.glsl"
 READ(kBindOccupied, uint32_t, occupied);
-READ(kBindMockupBrickSlot, uint32_t, mockup_brick_slot);
-READ(kBindMockupBricks, Brick, mockup_bricks);
-READ(kBindMockupListBegin, uint32_t, mockup_list_begin);
-READ(kBindToolRecords, uint64_t, tool_records);
+WORDS(kBindMockupBrickSlot, uint32_t, mockup_brick_slot)
+WORDS(kBindMockupBricks, uint32_t, mockup_bricks)
+WORDS(kBindMockupListBegin, uint32_t, mockup_list_begin)
+TEXELS(kBindToolRecords, tool_records)
 READ(kBindNearRuns, NearRun, near_runs);
 EDIT(kBindMobileState, uint32_t, mobile_state);
 EDIT(kBindContactMobiles, uint32_t, contact_mobiles);
@@ -24,7 +24,6 @@ EDIT(kBindVoxelState, uint32_t, voxel_state);
 EDIT(kBindTouchedVoxels, uvec4, touched_voxels);
 EDIT(kBindPairChunks, PairChunk, pair_chunks);
 
-#include "shaders/lib/budget.glsl"
 #include "shaders/lib/plan.glsl"
 #include "shaders/lib/batch/group_poses.glsl"
 #include "shaders/lib/broad_phase/turned_box.glsl"
@@ -84,7 +83,7 @@ void begin(uint32_t lane, uint32_t item) {
   take_pose(part.pose);
   put_pose(lane);
   const uint32_t place = part.run * kRunSize + lane % kRunSize;
-  if (place >= scene.tool.triangles || (uint32_t(tool_records[6u * place + 3u] >> 32) & kInfoCollapsed) != 0u)
+  if (place >= scene.tool.triangles || (record_flags(place) & kInfoCollapsed) != 0u)
     return;
   const RecordCorners r = record_at(place);
   const ivec3 a = world_from_tool(r.a), b = world_from_tool(r.b), c = world_from_tool(r.c);
@@ -158,7 +157,7 @@ bool step(uint32_t lane) {
   uint32_t bits = uint32_t(crossed);   // of V_int: all of it by its first voxel
   if (mixed) {
     const uint32_t word = uint32_t(half_y | z << 1);
-    bits = (mockup_bricks[slot].boundary[word] | mockup_bricks[slot].internal_[word]) & in_box(low, high) &
+    bits = (mockup_bricks(kBrickWords * slot + word) | mockup_bricks(kBrickWords * slot + kBrickInternalWord + word)) & in_box(low, high) &
            on_plane(brick_low + size * ivec3(0, 4 * half_y, z));
     voxel += uvec3(0, 4 * half_y, z);
   }
@@ -194,7 +193,7 @@ void mark_voxel(uint32_t place, uint32_t boundary, uvec3 voxel) {
       if (begins_group(at, 1u)) grow_result_groups(0u, groups_to(at + 1u));
     }
   }
-  const uint32_t list_begin = mockup_list_begin[boundary], list_end = mockup_list_begin[boundary + 1u];
+  const uint32_t list_begin = mockup_list_begin(boundary), list_end = mockup_list_begin(boundary + 1u);
   const uint32_t chunk = chunk_of(list_end - list_begin, PAIR_CHUNK, kMostChunks),
                  chunks = (list_end - list_begin + chunk - 1u) / chunk;
   if (chunks == 0u) return;
@@ -220,7 +219,7 @@ void decide(uint64_t work) {
   if (!triangle_touches_box(a, b, c, raw_normal(a, b, c), low, low + (whole ? 8 * size : size))) return;
   const uint32_t boundary = whole ? kNoVoxel : mockup_boundary_index(ivec3(voxel));
   const bool internal = INTERNAL && boundary == kNoVoxel;
-  mark_mobile(uint32_t(tool_records[6u * place + 1u] >> 32), internal ? kMobileInternal : kMobileBoundary);
+  mark_mobile(record_id(place), internal ? kMobileInternal : kMobileBoundary);
   if (!internal) mark_voxel(place, boundary, voxel);
 }
 

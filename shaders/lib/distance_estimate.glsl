@@ -5,6 +5,7 @@
 
 struct DistanceBounds {
   float least, most;   // another triangle whose `least` is beyond `most` is not the nearest
+  bool above;          // no edge has the point on its outer side: the distance is the height above the plane
 };
 
 // Squared distance, beside the height, to the edge e from its first end's f on; `side`: how far the point lies
@@ -29,6 +30,6 @@ DistanceBounds distance_bounds(ivec3 a, ivec3 b, ivec3 c, ivec3 n, ivec3 p) {
   const float height = m.x * f.x + m.y * f.y + m.z * f.z;
   const bool within = max(max(sides.x, sides.y), sides.z) < -slack;
   const float away = sqrt(height * height + (within ? 0.0 : min(min(ab, bc), ca)));
-  return DistanceBounds(away - slack, away + slack + float(2 * kDepthSlack));
+  return DistanceBounds(away - slack, away + slack + float(2 * kDepthSlack), within);
 }
 #endif

@@ -28,6 +28,35 @@ layout(constant_id = 25) const uint32_t FIELD_TILE = 64u;
 #define CONSTANT(bind, T, name) layout(set = 0, binding = bind, scalar) uniform name##_block { T name; }
 #define EDIT_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name; }
 
+// What is looked up by number, as a function name(i): a word T, a vector T of three, a texel of four words. llvmpipe
+// loads a word of READ lane by lane, behind a test of its own; a texel it takes in one piece, a fifth of the time.
+// So where it runs them shaders are compiled with PALPATE_TEXELS (scripts/cmake/PalpateShaders.cmake).
+#ifdef PALPATE_TEXELS
+#define TEXELS(bind, name)                                            \
+  layout(set = 0, binding = bind) uniform usamplerBuffer name##_texels; \
+  uvec4 name(uint32_t i) { return texelFetch(name##_texels, int32_t(i)); }
+#define WORDS(bind, T, name)                                          \
+  layout(set = 0, binding = bind) uniform usamplerBuffer name##_texels; \
+  T name(uint32_t i) { return T(texelFetch(name##_texels, int32_t(i)).x); }
+#define TRIPLES(bind, T, name)                                                                   \
+  layout(set = 0, binding = bind) uniform usamplerBuffer name##_texels;                            \
+  T name(uint32_t i) {                                                                             \
+    const int32_t at = int32_t(3u * i);                                                            \
+    return T(texelFetch(name##_texels, at).x, texelFetch(name##_texels, at + 1).x,                 \
+             texelFetch(name##_texels, at + 2).x);                                                 \
+  }
+#else
+#define TEXELS(bind, name)            \
+  READ(bind, uvec4, name##_texels);   \
+  uvec4 name(uint32_t i) { return name##_texels[i]; }
+#define WORDS(bind, T, name)          \
+  READ(bind, T, name##_words);        \
+  T name(uint32_t i) { return name##_words[i]; }
+#define TRIPLES(bind, T, name)        \
+  READ(bind, T, name##_triples);      \
+  T name(uint32_t i) { return name##_triples[i]; }
+#endif
+
 uint32_t flat_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 uint32_t flat_invocation() { return flat_group() * kGroupSize + gl_LocalInvocationIndex; }
 

@@ -1,7 +1,7 @@
 // Look-ups in a voxel partition. The file that includes this names its buffers first:
 //   #define PARTITION_GRID   scene.mockup.grid        (GridConstants)
-//   #define PARTITION_SLOTS  mockup_brick_slot        (uint32_t[], one a brick)
-//   #define PARTITION_BRICKS mockup_bricks            (Brick[])
+//   #define PARTITION_SLOTS  mockup_brick_slot        (WORDS, one a brick)
+//   #define PARTITION_BRICKS mockup_bricks            (WORDS: Brick)
 //   #define PARTITION(name)  mockup_##name            (prefix of the functions)
 // and may include it again with other names for the other body (it has no include guard, and undefines them).
 // All outside the grid is V_ext.
@@ -19,8 +19,8 @@ bool PARTITION(in_grid)(ivec3 voxel) {
 // Entry of brick_slot[] for a brick inside the grid.
 uint32_t PARTITION(slot_of)(ivec3 brick) {
   ivec3 n = PARTITION_GRID.bricks;
-  return PARTITION_SLOTS[uint32_t(brick.x) +
-                         uint32_t(n.x) * (uint32_t(brick.y) + uint32_t(n.y) * uint32_t(brick.z))];
+  return PARTITION_SLOTS(uint32_t(brick.x) +
+                         uint32_t(n.x) * (uint32_t(brick.y) + uint32_t(n.y) * uint32_t(brick.z)));
 }
 
 // Bit of a voxel in its brick.
@@ -34,16 +34,16 @@ uint32_t PARTITION(class_of)(ivec3 voxel) {
   uint32_t slot = PARTITION(slot_of)(voxel >> 3);
   if (slot >= kBrickInternal) return slot == kBrickInternal ? kVoxelInternal : kVoxelExternal;
   uint32_t bit = PARTITION(bit_of)(voxel);
-  if ((PARTITION_BRICKS[slot].boundary[bit >> 5] >> (bit & 31u) & 1u) != 0u) return kVoxelBoundary;
-  return (PARTITION_BRICKS[slot].internal_[bit >> 5] >> (bit & 31u) & 1u) != 0u ? kVoxelInternal
+  if ((PARTITION_BRICKS(kBrickWords * slot + (bit >> 5)) >> (bit & 31u) & 1u) != 0u) return kVoxelBoundary;
+  return (PARTITION_BRICKS(kBrickWords * slot + kBrickInternalWord + (bit >> 5)) >> (bit & 31u) & 1u) != 0u ? kVoxelInternal
                                                                                 : kVoxelExternal;
 }
 
 // Compact index of a voxel of a mixed brick, for list_begin[]; kNoVoxel if it is not V_bnd.
 uint32_t PARTITION(boundary_index_in)(uint32_t slot, uint32_t bit) {
-  uint32_t word = PARTITION_BRICKS[slot].boundary[bit >> 5];
+  uint32_t word = PARTITION_BRICKS(kBrickWords * slot + (bit >> 5));
   if ((word >> (bit & 31u) & 1u) == 0u) return kNoVoxel;
-  return PARTITION_BRICKS[slot].first[bit >> 5] + uint32_t(bitCount(word & ((1u << (bit & 31u)) - 1u)));
+  return PARTITION_BRICKS(kBrickWords * slot + kBrickFirstWord + (bit >> 5)) + uint32_t(bitCount(word & ((1u << (bit & 31u)) - 1u)));
 }
 
 // Compact index of any voxel; kNoVoxel if it is not V_bnd.

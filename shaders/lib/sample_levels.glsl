@@ -53,15 +53,16 @@ uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u], uint32_t now) {
          8;
 }
 
-#define SAMPLE_WEIGHT(NAME, LEVEL, LEVELS, TRIANGLES)                                                        \
+// LEVELS: WORDS (kBindMockupLevels of shared/frame_field.h).
+#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                               \
   uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                       \
-    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS[words]);   \
+    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS(words));   \
     if (level < taken) return 0ul;                                                                           \
-    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS[words + taken]) >> 30) << taken; \
+    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS(words + taken)) >> 30) << taken; \
   }                                                                                                          \
-  /* Q30. `base`: the triangle's field weight. */                                                            \
-  uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij) {                                                \
-    const uint32_t place = LEVELS[triangle], now = LEVEL(), part = now & 255u;                               \
+  /* Q30. `base`: the triangle's field weight; `now`: its body's level. */                                   \
+  uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij, uint32_t now) {                                  \
+    const uint32_t place = LEVELS(triangle), part = now & 255u;                                              \
     if (place == 0u || now == 0u) return uint64_t(base);                                                     \
     const uint32_t level = level_of_cell(ij);                                                                \
     return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) +                                \

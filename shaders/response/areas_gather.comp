@@ -26,6 +26,7 @@ void main() {
   const uint32_t id = contact_statics[slot];
   const uint32_t root = slot_of_node(union_root(area_node(slot)));
   const uint32_t zone = ZONES ? slot_of_node(union_root(zone_node(slot))) : root;
+  tell_spent();
   const uint32_t area = slot_areas[root];
   result_statics[slot].area = area;
   result_statics[slot].zone = zone;

@@ -30,4 +30,5 @@ void main() {
     union_join(area_node(slot), area_node(to));
     if (ZONES && (neighbours[e] & 1u) != 0u) union_join(zone_node(slot), zone_node(to));
   }
+  tell_spent();
 }

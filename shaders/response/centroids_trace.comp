@@ -89,6 +89,7 @@ void main() {
       area,
       rounded_centroid(mockup_vertices[corners.x], mockup_vertices[corners.y], mockup_vertices[corners.z]),
       -direction);
+  tell_spent();
   if (height == kNone) return;
   atomicAdd(areas[area].rays, 1u);
   atomicMax(areas[area].max_height, height);

@@ -36,7 +36,7 @@ PALPATE_CONSTANT int32_t kBindFineShells =
     109;  // likewise of the tool's fine partition, where it has an inside
 
 PALPATE_CONSTANT int32_t kBindMockupTree =
-    110;  // uint32_t: kTreeHeaderWords of shared/scene.h and what follows
+    110;  // texels: kTreeHeadTexels of shared/scene.h and what follows
 PALPATE_CONSTANT int32_t kBindToolTree = 111;  // likewise, tool lattice frame
 
 PALPATE_CONSTANT uint32_t kMostSampleLevel = 6u;   // kSampleLevels of model/lattice/lattice_mesh.h

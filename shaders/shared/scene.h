@@ -47,17 +47,22 @@ struct Brick {
   uint32_t first[16];      // compact index of the word's first boundary voxel
 };
 PALPATE_ASSERT_SIZE(Brick, 192);
+PALPATE_CONSTANT uint32_t kBrickWords = 48u;         // the same, word by word
+PALPATE_CONSTANT uint32_t kBrickInternalWord = 16u;  // of internal_[0]
+PALPATE_CONSTANT uint32_t kBrickFirstWord = 32u;     // of first[0]
+PALPATE_ASSERT_OFFSET(Brick, internal_, 64);
+PALPATE_ASSERT_OFFSET(Brick, first, 128);
 
-// Words of a body's tree as shaders read it: a header, TriangleTree::Boxes of compute/scene/triangle_tree.h
-// level by level, and TriangleTree::order.
+// A body's tree as shaders read it, in texels of four words: a head (how many triangles, how many levels,
+// with which texel their order and their records begin); by level one (with which its groups of eight boxes
+// begin, how many boxes it has); TriangleTree::Boxes of compute/scene/triangle_tree.h level by level;
+// TriangleTree::order, four a texel; by place in that order a triangle's corners and unit normal, a texel a
+// corner with a component of the normal behind it.
 PALPATE_CONSTANT uint32_t kMostTreeLevels = 11u;  // 8^11 triangles are more than a mesh can have
-PALPATE_CONSTANT uint32_t kTreeTriangles = 0u;    // how many it has
-PALPATE_CONSTANT uint32_t kTreeLevels = 1u;       // likewise
-PALPATE_CONSTANT uint32_t kTreeOrder = 2u;        // the word with which the order begins
-PALPATE_CONSTANT uint32_t kTreeBegin = 3u;        // by level: the word with which its groups of eight begin
-PALPATE_CONSTANT uint32_t kTreeNodes = kTreeBegin + kMostTreeLevels;  // by level: how many boxes it has
-PALPATE_CONSTANT uint32_t kTreeHeaderWords = kTreeNodes + kMostTreeLevels;
-PALPATE_CONSTANT uint32_t kTreeGroupWords = 48u;  // of eight boxes: lows by axis, then highs
+PALPATE_CONSTANT uint32_t kTreeLevel = 1u;        // the first level's texel
+PALPATE_CONSTANT uint32_t kTreeHeadTexels = kTreeLevel + kMostTreeLevels;
+PALPATE_CONSTANT uint32_t kTreeGroupTexels = 12u;  // of eight boxes: lows by axis, then highs
+PALPATE_CONSTANT uint32_t kTreeRecordTexels = 3u;
 
 // A body: mock-up (world lattice frame) or tool (tool lattice frame).
 struct BodyConstants {

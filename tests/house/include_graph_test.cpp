@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -184,6 +187,49 @@ TEST(OneDefinition, NoTwoTypesShareAName) {
   EXPECT_GT(types.size(), 100u);  // the scan sees the tree
   for (const auto& [name, places] : types)
     EXPECT_EQ(places.size(), 1u) << name << " is defined in " << places.front() << " and " << places.back();
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A shader and all that it includes.
+std::set<std::string> with_includes(const std::string& shader,
+                                    const std::multimap<std::string, std::string>& includes) {
+  std::set<std::string> all{shader};
+  std::vector<std::string> open{shader};
+  while (!open.empty()) {
+    const auto [first, last] = includes.equal_range(open.back());
+    open.pop_back();
+    for (auto it = first; it != last; ++it)
+      if (all.insert(it->second).second) open.push_back(it->second);
+  }
+  return all;
+}
+
+// Nothing else notices a frame that has lost an overflow but where it has one (lib/budget.glsl).
+TEST(Shaders, WhoCountsStepsTellsWhenTheyAreSpent) {
+  std::multimap<std::string, std::string> includes;
+  for (const Include& include : includes_below("shaders")) includes.emplace(include.file, include.target);
+  std::size_t count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "shaders")) {
+    if (entry.path().extension() != ".comp") continue;
+    const std::string shader = fs::relative(entry.path(), kRoot).string();
+    const std::set<std::string> all = with_includes(shader, includes);
+    const auto has = [&](const char* word) {
+      return std::any_of(all.begin(), all.end(), [&](const std::string& file) {
+        return file != "shaders/lib/budget.glsl" && text_of(kRoot / file).find(word) != std::string::npos;
+      });
+    };
+    if (!has("!spent(")) continue;
+    ++count;
+    const std::string own = text_of(entry.path());
+    EXPECT_TRUE(own.find("tell_spent();") != std::string::npos ||
+                own.find("tell_left_undone(") != std::string::npos)
+        << shader << " has loops that give up, and tells nobody";
+  }
+  EXPECT_GE(count, 11u);  // so many there are
 }
 
 }  // namespace

@@ -134,15 +134,15 @@ Result<void> MutableDevice::swap_all(const Words& before, const Words& after) {
   for (const auto& [key, made] : device_->pipelines)
     if (std::none_of(swapped_.begin(), swapped_.end(), [&](const auto& s) { return s.first == key; }))
       keys.push_back(key);
-  for (const Key& key : keys) {  // buffers, bytes of push constants, which are uniform, number of constants,
-                                 // (id, value) …, words of the module
+  for (const Key& key : keys) {  // buffers, bytes of push constants, which are uniform, which are texels,
+                                 // number of constants, (id, value) …, words of the module
     std::vector<SpecConstant> constants;
-    for (std::size_t i = 0; i < key[3]; ++i) constants.push_back({key[4 + 2 * i], key[5 + 2 * i]});
-    const Words code(key.begin() + 4 + 2 * static_cast<std::ptrdiff_t>(key[3]), key.end());
+    for (std::size_t i = 0; i < key[4]; ++i) constants.push_back({key[5 + 2 * i], key[6 + 2 * i]});
+    const Words code(key.begin() + 5 + 2 * static_cast<std::ptrdiff_t>(key[4]), key.end());
     if (code.size() != before.size() || without_bindings(code) != bare) continue;
     const Words changed = bound_alike(before, after, code);
     const auto made = ComputePipeline::create(*device_, {"mutant", changed.data(), changed.size() * 4},
-                                              key[0], key[1], constants, key[2]);
+                                              key[0], key[1], constants, {key[2], key[3]});
     if (!made) return made.error();
     if (auto there = made->wait(); !there) return there.error();
     Key mutants_key(key.begin(), key.end() - static_cast<std::ptrdiff_t>(code.size()));

@@ -292,6 +292,7 @@ using Words = std::vector<std::string>;
 void judge_shaders(const std::string& root, bool killers, bool probes_alone, bool as_gpu,
                    const Words& without) {
   MutableDevice device(as_gpu);
+  compile_with_texels(device.device().texels());
   int put_aside = 0;
   Oracle oracle(device, killers, without, [&](bool begins) {
     if (!begins) {

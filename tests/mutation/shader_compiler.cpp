@@ -12,6 +12,8 @@
 namespace palpate::mutation {
 namespace {
 
+bool with_texels = false;
+
 std::string text_of(const std::string& root, const std::string& name, const TextChange* change,
                     const SmallConstant* constant) {
   std::ifstream file(root + "/" + name);
@@ -51,6 +53,8 @@ class FromRoot final : public glslang::TShader::Includer {
 
 }  // namespace
 
+void compile_with_texels(bool texels) { with_texels = texels; }
+
 std::optional<std::string> compile_shader(const std::string& root, const std::string& name,
                                           const TextChange* change, const SmallConstant* constant) {
   static const bool initialised = glslang::InitializeProcess();
@@ -59,6 +63,7 @@ std::optional<std::string> compile_shader(const std::string& root, const std::st
   const char* source = text.c_str();
   glslang::TShader shader(EShLangCompute);
   shader.setStrings(&source, 1);
+  if (with_texels) shader.setPreamble("#define PALPATE_TEXELS\n");
   shader.setEnvInput(glslang::EShSourceGlsl, EShLangCompute, glslang::EShClientVulkan, 100);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);

@@ -26,4 +26,7 @@ struct SmallConstant {
 std::optional<std::string> compile_shader(const std::string& root, const std::string& name,
                                           const TextChange* change, const SmallConstant* constant = nullptr);
 
+/// From now on shaders are compiled as for a device that reads texels (VulkanDevice::texels()), or not.
+void compile_with_texels(bool texels);
+
 }  // namespace palpate::mutation

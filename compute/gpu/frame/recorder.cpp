@@ -10,11 +10,13 @@ namespace {
 
 // Words of SPIR-V that matter here (specification 2.3, 3.20, 3.32.3): a five-word header, then instructions
 // that begin with (length << 16 | opcode). OpDecorate target decoration literal; OpArrayLength type result
-// variable member.
+// variable member; OpVariable type result class.
 constexpr std::size_t kHeaderWords = 5;
 constexpr std::uint32_t kOpArrayLength = 68;
+constexpr std::uint32_t kOpVariable = 59;
 constexpr std::uint32_t kOpDecorate = 71;
 constexpr std::uint32_t kDecorationBinding = 33;
+constexpr std::uint32_t kUniformConstant = 0;  // a storage class: texel buffers alone have it here
 
 /// Calls `f` with a reference to each binding number of a module.
 template <class F>
@@ -38,6 +40,18 @@ std::vector<std::int32_t> measured_bindings(std::span<const std::uint32_t> words
     if (opcode == kOpArrayLength) measured.push_back(binding_of.at(words[i + 3]));
   }
   return measured;
+}
+
+/// Bindings that a module sees as texels.
+std::vector<std::uint32_t> texel_bindings(std::span<const std::uint32_t> words) {
+  std::map<std::uint32_t, std::uint32_t> binding_of;  // by variable; decorations stand before all of these
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = kHeaderWords; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16) {
+    const std::uint32_t opcode = words[i] & 0xFFFFu;
+    if (opcode == kOpDecorate && words[i + 2] == kDecorationBinding) binding_of[words[i + 1]] = words[i + 3];
+    if (opcode == kOpVariable && words[i + 3] == kUniformConstant) out.push_back(binding_of.at(words[i + 2]));
+  }
+  return out;
 }
 
 }  // namespace
@@ -87,7 +101,10 @@ std::uint64_t FrameBuffers::owned_bytes() const {
 Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& code, std::uint32_t push_bytes,
                                       std::span<const SpecConstant> constants) {
   FrameShader out;
-  std::vector<std::uint32_t> words(code.words, code.words + code.bytes / 4);
+  const bool texels = device.texels() && code.texel_words != nullptr;
+  const std::span<const std::uint32_t> module =
+      texels ? std::span(code.texel_words, code.texel_bytes / 4) : std::span(code.words, code.bytes / 4);
+  std::vector<std::uint32_t> words(module.begin(), module.end());
   for_each_binding(words, [&](std::uint32_t& b) { out.bindings.push_back(static_cast<std::int32_t>(b)); });
   out.measured = measured_bindings(words);
   std::sort(out.bindings.begin(), out.bindings.end());
@@ -96,12 +113,14 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
     const auto at = std::lower_bound(out.bindings.begin(), out.bindings.end(), static_cast<std::int32_t>(b));
     b = static_cast<std::uint32_t>(at - out.bindings.begin());
   });
-  std::uint32_t uniform = 0;
+  BindingKinds kinds;
   for (std::size_t i = 0; i < out.bindings.size(); ++i)
-    if (out.bindings[i] == gpu::kBindScene || out.bindings[i] == gpu::kBindFrameInput) uniform |= 1u << i;
-  auto pipeline = ComputePipeline::create(device, {code.name, words.data(), code.bytes},
-                                          static_cast<std::uint32_t>(out.bindings.size()), push_bytes,
-                                          constants, uniform);
+    if (out.bindings[i] == gpu::kBindScene || out.bindings[i] == gpu::kBindFrameInput)
+      kinds.uniform |= 1u << i;
+  for (const std::uint32_t packed : texel_bindings(words)) kinds.texels |= 1u << packed;
+  auto pipeline =
+      ComputePipeline::create(device, {code.name, words.data(), 4 * words.size()},
+                              static_cast<std::uint32_t>(out.bindings.size()), push_bytes, constants, kinds);
   if (!pipeline) return pipeline.error();
   out.pipeline = std::move(*pipeline);
   return out;

@@ -45,10 +45,12 @@ std::optional<PreparedScene> find_prepared(VulkanDevice& device, DiskCache& cach
   archive_numbers(reader, scene);
   for_each_made_buffer(scene, [&](VulkanBuffer& buffer) {
     std::uint64_t bytes = 0;
+    BufferKind kind{};
     reader(bytes);
+    reader(kind);
     const std::string_view content = reader.take(bytes);
     if (!room || content.empty()) return;  // empty buffers stay empty
-    auto made = VulkanBuffer::create(device, "a scene from the cache", bytes, BufferKind::kDevice);
+    auto made = VulkanBuffer::create(device, "a scene from the cache", bytes, kind);
     room = made && upload(device, *made, content.data(), content.size());
     if (room) buffer = std::move(*made);
   });
@@ -69,6 +71,7 @@ void keep_prepared(VulkanDevice& device, DiskCache& cache, const ContentKey& key
   bool whole = true;
   for_each_made_buffer(scene, [&](const VulkanBuffer& buffer) {
     writer(buffer.bytes());
+    writer(buffer.kind());
     if (buffer.bytes() == 0) return;
     if (buffer.as<char>() == nullptr) {
       auto& copy = copies.emplace_back(buffer.bytes());

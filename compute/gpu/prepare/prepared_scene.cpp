@@ -94,8 +94,8 @@ void make_search_tables(PrepareSteps& steps, const SceneGeometry& geometry, bool
     steps.progress("search", 0.95);
     return steps.ok();
   };
-  out.mockup.tree = steps.filled("the mock-up's tree", tree_words(geometry.mockup, go_on));
-  out.tool.tree = steps.filled("the tool's tree", tree_words(geometry.tool, go_on));
+  out.mockup.tree = steps.texels("the mock-up's tree", tree_words(geometry.mockup, go_on));
+  out.tool.tree = steps.texels("the tool's tree", tree_words(geometry.tool, go_on));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ struct BodyBuffers {
   VulkanBuffer extras;           ///< gpu::ExtraSample, ascending by triangle; `refined`
   VulkanBuffer levels;           ///< uint32: kBindMockupLevels in shaders/shared/frame_field.h; `refined`
   VulkanBuffer samples;          ///< uint32, one a triangle: LatticeMesh::grid_samples; tool only, `refined`
-  VulkanBuffer tree;             ///< uint32: kTreeHeaderWords in shaders/shared/scene.h; `refined`
+  VulkanBuffer tree;             ///< texels: kTreeHeadTexels in shaders/shared/scene.h; `refined`
   VulkanBuffer neighbour_begin;  ///< uint32, CSR over triangles, + 1; mock-up only
   VulkanBuffer neighbours;       ///< uint32: id · 2 + smooth; mock-up only
   PartitionBuffers partition;    ///< empty for the tool in `paper`

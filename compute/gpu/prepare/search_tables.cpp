@@ -1,6 +1,8 @@
 #include "compute/gpu/prepare/search_tables.h"
 
+#include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <utility>
 
 #include "compute/scene/brick_bits.h"
@@ -42,19 +44,32 @@ std::vector<std::uint32_t> occupied_words(const PartitionView& mockup) {
 
 std::vector<std::uint32_t> tree_words(const LatticeMesh& mesh, const std::function<bool()>& go_on) {
   using namespace gpu;
-  static_assert(sizeof(TriangleTree::Boxes) == 4 * kTreeGroupWords);
+  constexpr std::size_t kTexel = 4;  // words
+  static_assert(sizeof(TriangleTree::Boxes) == 4 * kTexel * kTreeGroupTexels);
   const TriangleTree tree = TriangleTree::make(mesh, go_on, TriangleTree::kNotSolid, false);
-  std::vector<std::uint32_t> words(kTreeHeaderWords + kTreeGroupWords * tree.boxes.size());
-  words[kTreeTriangles] = static_cast<std::uint32_t>(tree.order.size());
-  words[kTreeLevels] = static_cast<std::uint32_t>(tree.level_begin.size());
-  words[kTreeOrder] = static_cast<std::uint32_t>(words.size());
-  for (std::uint32_t level = 0; level < tree.level_begin.size(); ++level) {
-    words[kTreeBegin + level] = kTreeHeaderWords + kTreeGroupWords * tree.level_begin[level];
-    words[kTreeNodes + level] = tree.nodes(level);
-  }
+  const std::size_t triangles = tree.order.size(),
+                    order = kTreeHeadTexels + kTreeGroupTexels * tree.boxes.size(),
+                    records = order + (triangles + kTexel - 1) / kTexel;
+  std::vector<std::uint32_t> words(kTexel * (records + kTreeRecordTexels * triangles));
+  const auto set = [&](std::size_t texel, std::initializer_list<std::size_t> what) {
+    std::transform(what.begin(), what.end(), words.begin() + static_cast<std::ptrdiff_t>(kTexel * texel),
+                   [](std::size_t word) { return static_cast<std::uint32_t>(word); });
+  };
+  set(0, {triangles, tree.level_begin.size(), order, records});
+  for (std::uint32_t level = 0; level < tree.level_begin.size(); ++level)
+    set(kTreeLevel + level,
+        {kTreeHeadTexels + kTreeGroupTexels * tree.level_begin[level], tree.nodes(level)});
   if (!tree.boxes.empty())
-    std::memcpy(words.data() + kTreeHeaderWords, tree.boxes.data(), sizeof tree.boxes[0] * tree.boxes.size());
-  words.insert(words.end(), tree.order.begin(), tree.order.end());
+    std::memcpy(words.data() + kTexel * kTreeHeadTexels, tree.boxes.data(),
+                sizeof tree.boxes[0] * tree.boxes.size());
+  std::copy(tree.order.begin(), tree.order.end(),
+            words.begin() + static_cast<std::ptrdiff_t>(kTexel * order));
+  auto to = words.begin() + static_cast<std::ptrdiff_t>(kTexel * records);
+  for (const std::uint32_t id : tree.order)
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int k = 0; k < 3; ++k) *to++ = static_cast<std::uint32_t>(mesh.corner(id, corner)[k]);
+      *to++ = static_cast<std::uint32_t>(mesh.unit_normal_q30[id][corner]);
+    }
   return words;
 }
 

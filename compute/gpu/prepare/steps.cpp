@@ -27,9 +27,10 @@ void PrepareSteps::progress(const char* what, double done) {
     fail(Error{ErrorCode::kInternal, "preparation was cancelled"});
 }
 
-VulkanBuffer PrepareSteps::buffer(const char* what, std::uint64_t entries, std::uint64_t entry_bytes) {
+VulkanBuffer PrepareSteps::buffer(const char* what, std::uint64_t entries, std::uint64_t entry_bytes,
+                                  BufferKind kind) {
   if (!ok()) return {};
-  auto made = VulkanBuffer::create(device_, what, entries * entry_bytes, BufferKind::kDevice);
+  auto made = VulkanBuffer::create(device_, what, entries * entry_bytes, kind);
   if (!made) {
     fail(made.error());
     return {};
@@ -38,8 +39,8 @@ VulkanBuffer PrepareSteps::buffer(const char* what, std::uint64_t entries, std::
 }
 
 VulkanBuffer PrepareSteps::filled(const char* what, const void* data, std::uint64_t entries,
-                                  std::uint64_t entry_bytes) {
-  VulkanBuffer out = buffer(what, entries, entry_bytes);
+                                  std::uint64_t entry_bytes, BufferKind kind) {
+  VulkanBuffer out = buffer(what, entries, entry_bytes, kind);
   if (ok())
     if (auto r = upload(device_, out, data, entries * entry_bytes); !r) fail(r.error());
   return out;

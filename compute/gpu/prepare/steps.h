@@ -30,12 +30,18 @@ class PrepareSteps {
   void progress(const char* what, double done);
 
   /// A device buffer for `entries` entries of `entry_bytes`; contents undefined.
-  VulkanBuffer buffer(const char* what, std::uint64_t entries, std::uint64_t entry_bytes = 4);
+  VulkanBuffer buffer(const char* what, std::uint64_t entries, std::uint64_t entry_bytes = 4,
+                      BufferKind kind = BufferKind::kDevice);
   /// A device buffer with the given contents.
-  VulkanBuffer filled(const char* what, const void* data, std::uint64_t entries, std::uint64_t entry_bytes);
+  VulkanBuffer filled(const char* what, const void* data, std::uint64_t entries, std::uint64_t entry_bytes,
+                      BufferKind kind = BufferKind::kDevice);
   template <class T>
   VulkanBuffer filled(const char* what, const std::vector<T>& data) {
     return filled(what, data.data(), data.size(), sizeof(T));
+  }
+  /// The same, which shaders see in texels of four words.
+  VulkanBuffer texels(const char* what, const std::vector<std::uint32_t>& words) {
+    return filled(what, words.data(), words.size(), 4, BufferKind::kTexels);
   }
 
   /// The pipeline of a shader with these constants (ids 0, 1, …); made once.

@@ -13,9 +13,12 @@ FrameInput pose_input;   // of a batch
 #undef INPUT
 #define INPUT(member) (BATCH ? pose_input.member : frame_input.member)
 
+#include "shaders/lib/budget.glsl"
+
 // Before an item is looked at. In a lone frame nothing.
 void take_pose(uint32_t pose) {
   if (!BATCH) return;
+  tell_spent();
   frame_pose = pose;
   pose_input = batch_inputs[pose];
 }

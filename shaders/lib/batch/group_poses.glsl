@@ -1,6 +1,6 @@
 // The poses of a workgroup's invocations, for shaders in which these share out what they have found: whoever
 // goes on with an invocation's find goes on with its pose. Nothing of it is left in a lone frame.
-// The including shader has lib/batch/batch.glsl and lib/budget.glsl.
+// The including shader has lib/batch/batch.glsl.
 #ifndef PALPATE_LIB_GROUP_POSES
 #define PALPATE_LIB_GROUP_POSES
 shared uint32_t group_poses[kGroupSize];   // kNone: the invocation has no item
@@ -23,7 +23,10 @@ void go_on_for(uint32_t lane) {
 
 // At the end of all: what one had no steps left for may have been any other's.
 void tell_left_undone(uint32_t lane) {
-  if (!BATCH) return;
+  if (!BATCH) {
+    tell_spent();
+    return;
+  }
   if (loop_budget >= kLoopBudget) left_undone = 1u;
   barrier();
   if (left_undone != 0u && group_poses[lane] != kNone)

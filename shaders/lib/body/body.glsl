@@ -1,7 +1,7 @@
 // A body that does not move, in its own lattice frame, as its partition has it. The including shader names
 // it: BODY_GRID (GridConstants) and
-//   ivec3 body_vertices[], uvec3 body_triangles[], uint32_t body_info[], body_brick_slot[],
-//   Brick body_bricks[], uint32_t body_list_begin[], body_list[].
+//   TRIPLES body_vertices, body_triangles; WORDS body_info, body_brick_slot, body_bricks, body_list_begin,
+//   body_list.
 #ifndef PALPATE_LIB_BODY
 #define PALPATE_LIB_BODY
 #include "shaders/lib/voxel_range.glsl"
@@ -13,5 +13,5 @@
 #include "shaders/lib/partition.glsl"
 
 // Neither collapsed nor of a sheet.
-bool body_bounds_solid(uint32_t id) { return (body_info[id] & (kInfoCollapsed | kInfoSheet)) == 0u; }
+bool body_bounds_solid(uint32_t id) { return (body_info(id) & (kInfoCollapsed | kInfoSheet)) == 0u; }
 #endif

@@ -2,12 +2,10 @@
 // (docs/EXACTNESS.md section 4, "Depth"), exact. LANES invocations go down the body's tree together, eight
 // boxes or triangles of a node at a time. Floats say which triangles may be the nearest; integers decide among
 // those few at the end.
-// The including shader has what lib/body/body.glsl asks for, ivec3 body_normals[], uint32_t body_tree[]
-// (kTreeTriangles … of shared/scene.h) and frame_state (writable).
+// The including shader has TEXELS body_tree (shared/scene.h) and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_DEPTH
 #define PALPATE_LIB_BODY_DEPTH
 #include "shaders/shared/frame_field.h"
-#include "shaders/lib/body/body.glsl"
 #include "shaders/lib/budget.glsl"
 #include "shaders/lib/team.glsl"
 #include "shaders/lib/distance.glsl"
@@ -36,7 +34,7 @@ shared uint32_t team_nearest[kGroupSize];
 shared int32_t team_steps[kGroupSize];
 shared uint32_t gave_up;
 
-uint32_t tree_word(uint32_t word) { return body_tree[word]; }
+uvec4 tree_texel(uint32_t at) { return body_tree(at); }
 
 // A box that is so far away along each axis: a triangle in it is no nearer than the square's root less
 // kDepthSlack, and in `most` how far one of it is at most.
@@ -52,30 +50,44 @@ float square_of(float reach) {
   return most * most * (1.0 + 1.0 / 262144.0);
 }
 
-DistanceBounds bounds_of(uint32_t id, ivec3 p) {
-  const uvec3 ids = body_triangles[id];
-  return distance_bounds(body_vertices[ids.x], body_vertices[ids.y], body_vertices[ids.z], body_normals[id], p);
+// A triangle by its place in the tree's order.
+struct Placed {
+  ivec3 a, b, c, normal;
+};
+
+Placed triangle_at(uint32_t records, uint32_t place) {
+  const uint32_t at = records + kTreeRecordTexels * place;
+  const ivec4 a = ivec4(tree_texel(at)), b = ivec4(tree_texel(at + 1u)), c = ivec4(tree_texel(at + 2u));
+  return Placed(a.xyz, b.xyz, c.xyz, ivec3(a.w, b.w, c.w));
+}
+
+DistanceBounds bounds_at(uint32_t records, uint32_t place, ivec3 p) {
+  const Placed t = triangle_at(records, place);
+  return distance_bounds(t.a, t.b, t.c, t.normal, p);
 }
 
 // Box number i of a level.
 void box_of(uint32_t level, uint32_t i, out ivec3 low, out ivec3 high) {
-  const uint32_t at = tree_word(kTreeBegin + level) + kTreeGroupWords * (i / 8u) + i % 8u;
+  const uint32_t at = tree_texel(kTreeLevel + level).x + kTreeGroupTexels * (i / 8u) + i / 4u % 2u;
   for (uint32_t k = 0u; k < 3u; ++k) {
-    low[k] = int32_t(body_tree[at + 8u * k]);
-    high[k] = int32_t(body_tree[at + 24u + 8u * k]);
+    low[k] = int32_t(tree_texel(at + 2u * k)[i % 4u]);
+    high[k] = int32_t(tree_texel(at + 6u + 2u * k)[i % 4u]);
   }
 }
 
 // Integers on one of those that have been kept.
-void decide_nearest(ivec3 p, uint32_t id, inout Depth best) {
-  const uvec3 ids = body_triangles[id];
-  const ivec3 a = body_vertices[ids.x], n = body_normals[id];
-  const int32_t steps = distance_at(height_above(n, a, p), n, a, body_vertices[ids.y], body_vertices[ids.z], p);
+void take_nearest(int32_t steps, uvec4 head, uint32_t place, inout Depth best) {
+  const uint32_t id = tree_texel(head.z + place / 4u)[place % 4u];
   if (steps < best.steps || (steps == best.steps && id < best.triangle)) best = Depth(steps, id);
 }
 
+void decide_nearest(ivec3 p, uvec4 head, uint32_t place, inout Depth best) {
+  const Placed t = triangle_at(head.w, place);
+  take_nearest(distance_at(height_above(t.normal, t.a, p), t.normal, t.a, t.b, t.c, p), head, place, best);
+}
+
 // Looks into the team's last open nodes, an invocation a box or a triangle. Of the whole workgroup.
-void look_into(uint32_t mine, uint32_t part, ivec3 p) {
+void look_into(uint32_t mine, uint32_t part, uvec4 head, ivec3 p) {
   const uint32_t open = open_count[mine], first = kOpenRoom * mine;
   // One node leaves at most seven more than there were on each of its levels; several at a time need more room.
   const uint32_t taken = min(open, open + 8u * LANES <= kOpenRoom ? LANES / 8u : 1u);
@@ -87,20 +99,20 @@ void look_into(uint32_t mine, uint32_t part, ivec3 p) {
   }
   barrier();
   if (part == 0u) open_count[mine] = open - taken;
-  uint32_t below = kNone, triangle = kNone;
+  uint32_t below = kNone, triangle = kNone;   // `triangle`: its place
   float square = 0.0, least = 0.0, most;
   if (node != kNone) {
     const uint32_t child = 8u * (node & kNodeBits) + part % 8u;
     if (node >= kRun) {
-      if (child < tree_word(kTreeTriangles)) {
-        triangle = body_tree[tree_word(kTreeOrder) + child];
-        const DistanceBounds bounds = bounds_of(triangle, p);
+      if (child < head.x) {
+        triangle = child;
+        const DistanceBounds bounds = bounds_at(head.w, child, p);
         least = bounds.least;
         atomicMin(team_reach[mine], floatBitsToUint(bounds.most));
       }
     } else {
       const uint32_t level = node >> kLevelShift;
-      if (child < tree_word(kTreeNodes + level)) {
+      if (child < tree_texel(kTreeLevel + level).y) {
         ivec3 low, high;
         box_of(level, child, low, high);
         square = square_to_box(p, low, high, most);
@@ -131,11 +143,12 @@ Depth body_depth(bool asks, ivec3 p) {
   if (LANES == 1u) return asks ? depth_alone(p) : kNoDepth;
   const uint32_t mine = team(), part = team_part();
   // The lowest level that they can look into at once.
-  const uint32_t levels = asks ? tree_word(kTreeLevels) : 0u;
+  const uvec4 head = tree_texel(0u);
+  const uint32_t levels = asks ? head.y : 0u;
   uint32_t level = levels - 1u, nodes = 0u;
   if (levels != 0u) {
-    while (level > 0u && tree_word(kTreeNodes + level - 1u) <= LANES) --level;
-    nodes = (tree_word(kTreeNodes + level) + 7u) / 8u;
+    while (level > 0u && tree_texel(kTreeLevel + level - 1u).y <= LANES) --level;
+    nodes = (tree_texel(kTreeLevel + level).y + 7u) / 8u;
   }
   if (part < nodes) {
     open_nodes[kOpenRoom * mine + part] = level << kLevelShift | part;
@@ -161,12 +174,12 @@ Depth body_depth(bool asks, ivec3 p) {
     }
     more = open && gave_up == 0u;
     if (more && !full) {
-      look_into(mine, part, p);
+      look_into(mine, part, head, p);
     } else {
       const float reach = uintBitsToFloat(team_reach[mine]);
       for (uint32_t i = part; i < kept_count[mine] && !spent(1u); i += LANES)
         if (intBitsToFloat(kept_least[kKeptRoom * mine + i]) <= reach)
-          decide_nearest(p, kept_triangles[kKeptRoom * mine + i], best);
+          decide_nearest(p, head, kept_triangles[kKeptRoom * mine + i], best);
       barrier();
       if (best.triangle != kNone)
         atomicMin(team_reach[mine], floatBitsToUint(float(best.steps) + float(2 * kDepthSlack)));

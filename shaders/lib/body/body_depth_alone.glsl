@@ -1,165 +1,156 @@
-// How deep a lattice point lies below a body's surface, looked for by one invocation alone: along the voxels'
-// lists, for llvmpipe pays much for barriers. lib/body/body_depth.glsl includes it.
+// How deep a lattice point lies below a body's surface, looked for by one invocation alone: down the tree, the
+// nearest box of a group first. llvmpipe pays much for barriers, and runs both branches of an `if`: so boxes and
+// triangles have a loop each. lib/body/body_depth.glsl includes it.
 #ifndef PALPATE_LIB_BODY_DEPTH_ALONE
 #define PALPATE_LIB_BODY_DEPTH_ALONE
-
-DistanceBounds solid_bounds_of(uint32_t id, ivec3 p) {
-  if (!body_bounds_solid(id)) return DistanceBounds(2.0 * kFar, kFar);
-  return bounds_of(id, p);
-}
 
 const uint32_t kKept = 8u;
 
 // What may be the nearest. A place is free where `least` is beyond `reach`.
 struct NearTriangles {
   float reach;   // what is further is not the nearest
-  uint32_t id[kKept];
+  uint32_t above;   // bits: those whose distance is the height above their plane
+  uint32_t place[kKept];
   float least[kKept];
 };
 
 NearTriangles none_near(float reach) {
   NearTriangles near;
   near.reach = reach;
+  near.above = 0u;
   for (uint32_t i = 0u; i < kKept; ++i) {
-    near.id[i] = kNone;
+    near.place[i] = kNone;
     near.least[i] = 2.0 * kFar;
   }
   return near;
 }
 
 // Keeps a triangle if it may be the nearest. False: there is no room.
-bool keep_near(uint32_t id, ivec3 p, inout NearTriangles near) {
-  const DistanceBounds bounds = solid_bounds_of(id, p);
+bool keep_near(uint32_t place, DistanceBounds bounds, inout NearTriangles near) {
   near.reach = min(near.reach, bounds.most);
-  uint32_t place = kKept;
+  uint32_t free = kKept;
   for (uint32_t i = 0u; i < kKept; ++i)
-    if (near.least[i] > near.reach) place = i;
-  for (uint32_t i = 0u; i < kKept; ++i)
-    if (near.id[i] == id) place = i;   // another voxel lists it, too
+    if (near.least[i] > near.reach) free = i;
   if (bounds.least > near.reach) return true;
   for (uint32_t i = 0u; i < kKept; ++i)
-    if (i == place) {
-      near.id[i] = id;
+    if (i == free) {
+      near.place[i] = place;
       near.least[i] = bounds.least;
+      near.above = near.above & ~(1u << i) | uint32_t(bounds.above) << i;
     }
-  return place != kKept;
+  return free != kKept;
 }
 
-// Integers on what has been kept.
-void decide_kept(ivec3 p, NearTriangles near, inout Depth best) {
+// Bits: of those that are kept the ones that still may be the nearest.
+uint32_t open_of(NearTriangles near) {
   uint32_t open = 0u;
   for (uint32_t i = 0u; i < kKept; ++i)
     if (near.least[i] <= near.reach) open |= 1u << i;
+  return open;
+}
+
+void come_nearer(Depth best, inout NearTriangles near) {
+  near.reach = min(near.reach, float(best.steps) + float(2 * kDepthSlack));
+}
+
+// Integers on what has been kept: first where they are soon done, and mostly nothing else is left then.
+void decide_kept(ivec3 p, uvec4 head, inout NearTriangles near, inout Depth best) {
+  uint32_t open = open_of(near) & near.above;
   while (open != 0u && !spent(1u)) {
-    decide_nearest(p, near.id[findLSB(open)], best);
+    const uint32_t place = near.place[findLSB(open)];
+    const Placed t = triangle_at(head.w, place);
+    take_nearest(height_above(t.normal, t.a, p), head, place, best);
     open &= open - 1u;
   }
-}
-
-// Whether a closed box that is so far away along each axis reaches there.
-bool reaches(float reach, ivec3 p, ivec3 low, ivec3 high) {
-  const vec3 gap = vec3(max(max(low - p, p - high), ivec3(0)));
-  return gap.x * gap.x + gap.y * gap.y + gap.z * gap.z <= reach * reach * 1.0001;
-}
-
-// How far the nearest triangle is at most: by what the nearest V_bnd voxels along the axes list, the point's
-// own first; kFar where there is none.
-float reach_along_axes(ivec3 p, ivec3 home) {
-  const ivec3 cells = 8 * BODY_GRID.bricks;
-  const int32_t last_ring = max(cells.x, max(cells.y, cells.z));
-  float reach = kFar;
-  int32_t ring = 0;
-  uint32_t way = 0u, entry = 0u, last = 0u;
-  while (!spent(1u)) {
-    if (entry == last) {
-      if (way == 6u) {
-        if (reach < kFar || ring == last_ring) break;
-        way = 0u;
-        ++ring;
-      }
-      ivec3 voxel = home;
-      voxel[int(way >> 1)] += (way & 1u) != 0u ? ring : -ring;
-      way = ring == 0 ? 6u : way + 1u;
-      const uint32_t boundary = body_boundary_index(voxel);
-      if (boundary == kNoVoxel) continue;
-      entry = body_list_begin[boundary];
-      last = body_list_begin[boundary + 1u];
-    }
-    reach = min(reach, solid_bounds_of(body_list[entry++], p).most);
+  come_nearer(best, near);
+  open = open_of(near) & ~near.above;
+  while (open != 0u && !spent(1u)) {
+    decide_nearest(p, head, near.place[findLSB(open)], best);
+    come_nearer(best, near);
+    open &= open - 1u;
+    open &= open_of(near);
   }
-  return reach;
+  near = none_near(near.reach);
 }
 
-// Bits of a brick's word (4 rows of 8 voxels, from y on) within low … high of the brick.
-uint32_t word_bits(int32_t y, ivec3 low, ivec3 high) {
-  const int32_t first = max(low.y - y, 0), end = min(high.y - y, 3);
-  if (first > 3 || end < 0) return 0u;
-  const uint32_t row = 0xFFu >> uint32_t(7 - high.x) & 0xFFu << uint32_t(low.x);
-  return row * 0x01010101u & 0xFFFFFFFFu >> uint32_t(8 * (3 - end)) & 0xFFFFFFFFu << uint32_t(8 * first);
+// Of the boxes of a group the nearest one, and bits: of those of `left` that may hold something within the reach.
+uint32_t near_boxes(uint32_t at, uint32_t left, float reach, ivec3 p, out uint32_t nearest) {
+  vec4 squares[2] = {vec4(0.0), vec4(0.0)};
+  for (uint32_t k = 0u; k < 3u; ++k)
+    for (uint32_t four = 0u; four < 2u; ++four) {
+      const ivec4 low = ivec4(tree_texel(at + 2u * k + four)), high = ivec4(tree_texel(at + 6u + 2u * k + four));
+      const vec4 gap = vec4(max(max(low - p[k], p[k] - high), ivec4(0)));
+      squares[four] += gap * gap;
+    }
+  const float limit = square_of(reach);
+  float least = 2.0 * kFar * kFar;
+  uint32_t bits = 0u;
+  nearest = 0u;
+  for (uint32_t i = 0u; i < 8u; ++i) {
+    const float square = squares[i / 4u][i % 4u];
+    const bool may = square <= limit && (left >> i & 1u) != 0u;
+    bits |= uint32_t(may) << i;
+    if (may && square < least) {
+      least = square;
+      nearest = i;
+    }
+  }
+  return bits;
 }
 
-// Of those within reach.
-Depth nearest_within(float reach, ivec3 p) {
+uvec3 bits_of_level(uint32_t level, uint32_t bits) {
+  const uint32_t word = bits << 8u * (level % 4u);
+  return uvec3(level < 4u ? word : 0u, level / 4u == 1u ? word : 0u, level < 8u ? 0u : word);
+}
+
+Depth depth_alone(ivec3 p) {
+  const uvec4 head = tree_texel(0u);
   Depth best = kNoDepth;
-  NearTriangles near = none_near(reach);
-
-  // All voxels within reach of what was found, brick by brick, as far as they may hold something nearer.
-  const int32_t size = BODY_GRID.size;
-  ivec3 low = ivec3(0), high = 8 * BODY_GRID.bricks - 1;
-  if (near.reach < kFar / 8.0) {   // 2^29, so that sums fit
-    const int32_t reach = int32_t(near.reach) + 1;
-    low = max(low, body_voxel_of(p - reach));
-    high = min(high, body_voxel_of(p + reach));
-  }
-  const ivec3 first = low >> 3, end = high >> 3;
-  ivec3 brick = first;
-  uint32_t slot = 0u, word = 0u, words = 0u, bits = 0u, whole = 0u, entry = 0u, last = 0u;
-  ivec3 in_low = ivec3(0), in_high = ivec3(0), at = first;   // `at`: the present brick; `brick`: the next one
-  bool more = true;
-  while (more && !spent(1u)) {
+  NearTriangles near = none_near(kFar);
+  // By level eight bits: boxes of the group on the way down that are left to look into. The group of the lowest
+  // level that has any is number `node`.
+  uvec3 left = uvec3(0u);
+  uint32_t level = head.y - 1u, node = 0u;
+  bool more = head.y != 0u;
+  if (more) left |= bits_of_level(level, 0xFFu);
+  uint32_t place = 0u, last = 0u;   // of the present run
+  while ((more || place < last) && !spent(1u)) {
     bool room = true;
-    while (room && !spent(1u)) {
-      if (entry < last) {
-        room = keep_near(body_list[entry], p, near);
-        entry += uint32_t(room);
-      } else if (bits != 0u) {
-        const uint32_t bit = uint32_t(findLSB(bits));
-        bits &= bits - 1u;
-        const ivec3 voxel = 8 * at + ivec3(bit & 7u, 4u * (word & 1u) + (bit >> 3), word >> 1);
-        const ivec3 corner = BODY_GRID.origin + size * voxel;
-        if (!reaches(near.reach, p, corner, corner + size)) continue;
-        const uint32_t boundary =
-            body_bricks[slot].first[word] + uint32_t(bitCount(whole & ((1u << bit) - 1u)));
-        entry = body_list_begin[boundary];
-        last = body_list_begin[boundary + 1u];
-      } else if (word + 1u < words) {
-        ++word;
-        const uint32_t wanted = word_bits(int32_t(4u * (word & 1u)), in_low, in_high);
-        if (wanted == 0u) continue;
-        whole = body_bricks[slot].boundary[word];
-        bits = whole & wanted;
-      } else {
-        more = all(lessThanEqual(brick, end));
+    while (room && (more || place < last) && !spent(1u)) {
+      while (more && place == last && !spent(1u)) {
+        more = left != uvec3(0u);
         if (!more) break;
-        at = brick;
-        brick = ivec3(brick.x + 1, brick.yz);
-        if (brick.x > end.x) brick = ivec3(first.x, brick.y + 1, brick.z);
-        if (brick.y > end.y) brick = brick.z < end.z ? ivec3(first.xy, brick.z + 1) : end + 1;
-        slot = body_slot_of(at);
-        words = 0u;
-        const ivec3 corner = BODY_GRID.origin + 8 * size * at;
-        if (slot >= kBrickInternal || !reaches(near.reach, p, corner, corner + 8 * size)) continue;
-        in_low = clamp(low - 8 * at, ivec3(0), ivec3(7));
-        in_high = clamp(high - 8 * at, ivec3(0), ivec3(7));
-        word = 2u * uint32_t(in_low.z) - 1u;   // the one before the first; runs round at 0
-        words = 2u * uint32_t(in_high.z) + 2u;
+        const uint32_t lowest = left.x != 0u   ? uint32_t(findLSB(left.x))
+                                : left.y != 0u ? 32u + uint32_t(findLSB(left.y))
+                                               : 64u + uint32_t(findLSB(left.z));
+        node >>= 3u * (lowest / 8u - level);
+        level = lowest / 8u;
+        const uvec4 boxes = tree_texel(kTreeLevel + level);
+        const uint32_t left_of_level = level < 4u ? left.x : level < 8u ? left.y : left.z,
+                       there = 0xFFu >> (8u - min(8u, boxes.y - 8u * node));
+        uint32_t nearest;
+        const uint32_t bits =
+            near_boxes(boxes.x + kTreeGroupTexels * node, left_of_level >> 8u * (level % 4u) & there, near.reach, p,
+                       nearest);
+        left = left & ~bits_of_level(level, 0xFFu) | bits_of_level(level, bits & ~(1u << nearest));
+        if (bits == 0u) continue;
+        const uint32_t child = 8u * node + nearest;
+        if (level == 0u) {
+          place = 8u * child;
+          last = min(place + 8u, head.x);
+        } else {
+          --level;
+          node = child;
+          left |= bits_of_level(level, 0xFFu);
+        }
+      }
+      while (room && place < last && !spent(1u)) {
+        room = keep_near(place, bounds_at(head.w, place, p), near);
+        if (room) ++place;
       }
     }
-    decide_kept(p, near, best);
-    near = none_near(min(near.reach, float(best.steps) + float(2 * kDepthSlack)));
+    decide_kept(p, head, near, best);
   }
   return best;
 }
-
-Depth depth_alone(ivec3 p) { return nearest_within(reach_along_axes(p, body_voxel_of(p)), p); }
 #endif

@@ -1,7 +1,7 @@
 // Whether a lattice point in a V_bnd voxel lies inside a body that does not move, in its own frame
 // (docs/EXACTNESS.md section 4). A team goes the same way; each invocation counts its share of what a voxel
 // lists, and team_sum() tells.
-// The including shader has what lib/body/body.glsl asks for, int32_t body_shells[] and frame_state (writable).
+// The including shader has what lib/body/body.glsl asks for, WORDS body_shells and frame_state (writable).
 #ifndef PALPATE_LIB_BODY_WALKS
 #define PALPATE_LIB_BODY_WALKS
 #include "shaders/lib/body/body.glsl"
@@ -10,16 +10,37 @@
 
 // Corners of an entry of the lists. False: it does not count. `sheets`: those of sheets do.
 bool body_corners(uint32_t entry, bool sheets, out ivec3 a, out ivec3 b, out ivec3 c) {
-  const uint32_t id = body_list[entry];
+  const uint32_t id = body_list(entry);
   if (!sheets && !body_bounds_solid(id)) return false;
-  const uvec3 corners = body_triangles[id];
-  a = body_vertices[corners.x];
-  b = body_vertices[corners.y];
-  c = body_vertices[corners.z];
+  const uvec3 corners = body_triangles(id);
+  a = body_vertices(corners.x);
+  b = body_vertices(corners.y);
+  c = body_vertices(corners.z);
   return true;
 }
 
-LISTED_CROSSINGS(body_crossings, body_corners)
+// To the next face on the way out of the body.
+bool body_step(inout Walk walk, out uint32_t boundary) {
+  boundary = body_boundary_index(walk.voxel);
+  if (boundary == kNoVoxel && body_class_of(walk.voxel) == kVoxelExternal) return false;
+  walk.from = walk.to;
+  walk.to[walk.axis] =
+      BODY_GRID.origin[walk.axis] + BODY_GRID.size * (walk.voxel[walk.axis] + walk.up);
+  walk.voxel[walk.axis] += 2 * walk.up - 1;
+  return true;
+}
+
+LISTED_CROSSINGS(body_crossings, body_corners, body_step)
+
+// A single piece, from `from` to `at`.
+bool only_step(inout Walk walk, out uint32_t boundary) {
+  boundary = body_boundary_index(walk.voxel);
+  const bool first = walk.to != walk.at;
+  walk.to = walk.at;
+  return first;
+}
+
+LISTED_CROSSINGS(shell_crossings, body_corners, only_step)
 
 // Whether the point is inside, by the team's sum: the winding about a closed body, else the shells (below).
 bool body_says_inside(bool closed, int32_t sum) { return closed ? sum != 0 : sum > 0; }
@@ -28,9 +49,8 @@ bool body_says_inside(bool closed, int32_t sum) { return closed ? sum != 0 : sum
 // between it and the point. Sheets do not count.
 int32_t body_shells_at(ivec3 point, ivec3 home) {
   const ivec3 middle = BODY_GRID.origin + BODY_GRID.size * home + ivec3(BODY_GRID.size / 2);
-  const uint32_t boundary = body_boundary_index(home);
-  return (speaks() ? body_shells[boundary] : 0) +
-         (point == middle ? 0 : body_crossings(point, middle, boundary, false));
+  return (speaks() ? body_shells(body_boundary_index(home)) : 0) +
+         shell_crossings(Walk(point, point, home, middle, 0, 0), false);
 }
 
 // A closed body: the winding, from a walk out of it the shortest way, at whose end it is 0.
@@ -45,18 +65,6 @@ int32_t body_winding(ivec3 point, ivec3 home) {
       ++ring;
     }
   }
-  const int axis = int(way >> 1);
-  const int32_t up = int32_t(way & 1u);
-  int32_t winding = 0;
-  ivec3 voxel = home, from = point, to = point;
-  while (!spent(1u)) {
-    const uint32_t boundary = body_boundary_index(voxel);
-    if (boundary == kNoVoxel && body_class_of(voxel) == kVoxelExternal) break;
-    from = to;
-    to[axis] = BODY_GRID.origin[axis] + BODY_GRID.size * (voxel[axis] + up);
-    if (boundary != kNoVoxel && from != to) winding += body_crossings(from, to, boundary, true);
-    voxel[axis] += 2 * up - 1;
-  }
-  return winding;
+  return body_crossings(Walk(point, point, home, point, int(way >> 1), int32_t(way & 1u)), true);
 }
 #endif

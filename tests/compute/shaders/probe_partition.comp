@@ -11,8 +11,13 @@ layout(scalar, set = 0, binding = 1) writeonly buffer Answers { PartitionAnswer 
 layout(push_constant) uniform Push { uint32_t count; };
 
 uint32_t probed;
-uint32_t probed_slots[64];   // beyond 27 bricks, too
-Brick probed_bricks[2];
+uint32_t probed_slots(uint32_t brick) { return PALPATE_PROBE_SLOT(brick); }
+uint32_t probed_bricks(uint32_t word) {
+  const uint32_t slot = word / kBrickWords, w = word % 16u;
+  return word % kBrickWords < kBrickInternalWord ? PALPATE_PROBE_BOUNDARY(slot, w)
+         : word % kBrickWords < kBrickFirstWord  ? PALPATE_PROBE_INTERNAL(slot, w)
+                                                 : PALPATE_PROBE_FIRST(slot, w);
+}
 #define PARTITION_GRID cases[probed].grid
 #define PARTITION_SLOTS probed_slots
 #define PARTITION_BRICKS probed_bricks
@@ -22,13 +27,6 @@ Brick probed_bricks[2];
 void main() {
   probed = item_index();
   if (probed >= count) return;
-  for (uint32_t b = 0u; b < 64u; ++b) probed_slots[b] = PALPATE_PROBE_SLOT(b);
-  for (uint32_t slot = 0u; slot < 2u; ++slot)
-    for (uint32_t w = 0u; w < 16u; ++w) {
-      probed_bricks[slot].boundary[w] = PALPATE_PROBE_BOUNDARY(slot, w);
-      probed_bricks[slot].internal_[w] = PALPATE_PROBE_INTERNAL(slot, w);
-      probed_bricks[slot].first[w] = PALPATE_PROBE_FIRST(slot, w);
-    }
   const ivec3 voxel = cases[probed].voxel;
   answers[probed] = PartitionAnswer(probed_voxel_of(cases[probed].point), probed_class_of(voxel), probed_boundary_index(voxel));
 }
