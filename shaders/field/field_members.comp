@@ -15,6 +15,7 @@ EDIT(kBindFrameLists, FrameList, frame_lists);
 #include "shaders/lib/set_name.glsl"
 
 layout(constant_id = 0) const bool INSIDE = true;     // the tool has an inside
+layout(constant_id = 1) const bool LISTED = true;     // preparation has listed the tool's samples
 
 READ(kBindSamples, FrameSample, frame_samples);
 WORDS(kBindMockupInfo, uint32_t, mockup_info)
@@ -26,6 +27,8 @@ TRIPLES(kBindToolTriangles, uvec3, tool_triangles)
 WORDS(kBindToolInfo, uint32_t, tool_info)
 WORDS(kBindToolWeights, uint32_t, tool_weights)
 READ(kBindToolExtras, ExtraSample, tool_extras);
+WORDS(kBindToolLevels, uint32_t, tool_levels)
+TEXELS(kBindToolSampleEnds, tool_sample_ends)
 EDIT(kBindCarrierWork, int64_t, carrier_work);
 EDIT(kBindMockupPoints, FieldPoint, mockup_points);
 EDIT(kBindFieldTiles, FieldTile, field_tiles);
@@ -80,6 +83,24 @@ void list_tiles(uint32_t mobile, uint32_t entry, uint32_t info) {
   }
 }
 
+// Of those that are listed: the first ones weigh something, those of the frame's level.
+void list_samples(uint32_t mobile, uint32_t entry) {
+  const uvec4 begin = tool_sample_ends(kSampleEndTexels * mobile),
+              more = tool_sample_ends(kSampleEndTexels * mobile + 1u);
+  const uint32_t place = tool_levels(mobile), now = tool_level() >> 8,
+                 level = place == 0u || now == 0u
+                             ? 0u
+                             : min(now, tool_levels(scene.tool.triangles + kSideLevelWords * (place - 1u)));
+  const uint32_t count = level < 3u ? begin[1u + level] : more[level - 3u];
+  if (count == 0u) return;
+  const uint32_t tile = chunk_of(count, FIELD_TILE, kMostTiles);
+  const uvec2 tiles = take_tiles((count + tile - 1u) / tile);
+  for (uint32_t t = tiles.x; t < tiles.y && !spent(1u); ++t) {
+    const uint32_t first = (t - tiles.x) * tile;
+    field_tiles[t] = FieldTile(entry, 2, 0, 0u, begin.x + first, begin.x + min(first + tile, count));
+  }
+}
+
 void take_static(uint32_t slot) {
   const uint32_t entry = contact_statics[slot], id = static_id(entry);
   take_pose(static_pose(entry));
@@ -98,7 +119,11 @@ void take_mobile(uint32_t place) {
   if (!in_contact()) return;
   const uint32_t mobile = mobile_id(entry), info = tool_info(mobile);
   if ((info & kInfoHasExtra) != 0u) list_extras(0, entry, tool_extras_of(mobile, scene.tool_extras));
-  if (tool_weights(mobile) != 0u) list_tiles(mobile, entry, info);
+  if (tool_weights(mobile) == 0u) return;
+  if (LISTED)
+    list_samples(mobile, entry);
+  else
+    list_tiles(mobile, entry, info);
 }
 
 void take_sample(uint32_t i) {
@@ -109,7 +134,7 @@ void take_sample(uint32_t i) {
   const uint32_t axis = mockup_info(id) >> kInfoAxisShift & 3u;
   const ivec2 ij =
       cell_of_sample(ivec2(work.point[(axis + 1u) % 3u], work.point[(axis + 2u) % 3u]), scene.sample_spacing);
-  const uint32_t weight = uint32_t(mockup_weight(id, mockup_weights(id), ij, mockup_level()) >> 6);
+  const uint32_t weight = uint32_t(mockup_weight(id, mockup_weights(id), level_of_cell(ij), mockup_level()) >> 6);
   if (weight == 0u) return;
   const uint32_t at = take_room(kListMockupPoints, 1u);
   if (at >= frame_lists[kListMockupPoints].capacity) return;

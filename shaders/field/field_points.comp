@@ -1,5 +1,6 @@
 #version 460
-// kFieldTileLanes invocations: a tile of a tool triangle's sample grid, a cell each at a time, or of extra samples.
+// kFieldTileLanes invocations: a tile of a tool triangle's samples, listed or a cell of its grid each at a time, or of
+// extra samples.
 // Lists the samples that weigh something; of the tool's grid those that lie in a V_bnd or V_int voxel of the
 // mock-up, or with their triangle's first corner where it touches nothing.
 // Reads field_tiles, both bodies' extra samples, the tool in its own frame, the mock-up's partition. Writes
@@ -11,6 +12,8 @@
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
+layout(constant_id = 1) const bool LISTED = true;   // preparation has listed the tool's samples
+
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
 EDIT(kBindFrameLists, FrameList, frame_lists);
@@ -21,6 +24,7 @@ TRIPLES(kBindToolTriangles, uvec3, tool_triangles)
 WORDS(kBindToolInfo, uint32_t, tool_info)
 WORDS(kBindToolWeights, uint32_t, tool_weights)
 WORDS(kBindToolLevels, uint32_t, tool_levels)
+TEXELS(kBindToolSamplePoints, tool_sample_points)
 READ(kBindMobileState, uint32_t, mobile_state);
 WORDS(kBindMockupBrickSlot, uint32_t, mockup_brick_slots)
 WORDS(kBindMockupBricks, uint32_t, mockup_bricks)
@@ -65,6 +69,21 @@ void take_mockup_extra(FieldTile tile, uint32_t i, uint32_t level) {
   if (begins_group(at, 1u)) grow_pushed_groups_deep(kGroupsMockupPush, groups_to(at + 1u), LANES);
 }
 
+void take_listed(FieldTile tile) {
+  const uint32_t mobile = mobile_id(tile.triangle);
+  take_pose(mobile_pose(tile.triangle));
+  const uint32_t base = tool_weights(mobile), level = tool_level();
+  const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
+  const ivec3 corner = world_from_tool(tool_vertices(tool_triangles(mobile).x));
+  for (uint32_t i = tile.begin + flat_invocation() % kFieldTileLanes; i < tile.end; i += kFieldTileLanes) {
+    const uvec4 listed = tool_sample_points(i);
+    const uint32_t weight = uint32_t(tool_weight(mobile, base, listed.w, level) >> 6);
+    const ivec3 p = world_from_tool(ivec3(listed.xyz));
+    if (weight != 0u && mockup_class_of(mockup_voxel_of(hit ? p : corner)) != kVoxelExternal)
+      list_tool_point(FieldPoint(p, tile.triangle, weight));
+  }
+}
+
 void take_grid(FieldTile tile) {
   const uint32_t mobile = mobile_id(tile.triangle);
   take_pose(mobile_pose(tile.triangle));
@@ -79,7 +98,7 @@ void take_grid(FieldTile tile) {
     const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
                 g = sample_of_cell(ij, spacing);
     if (!grid_point_inside(triangle, g)) continue;
-    const uint32_t weight = uint32_t(tool_weight(mobile, base, ij, level) >> 6);
+    const uint32_t weight = uint32_t(tool_weight(mobile, base, level_of_cell(ij), level) >> 6);
     if (weight == 0u) continue;
     const ivec3 p = world_from_tool(sample_point(triangle, g));
     if (mockup_class_of(mockup_voxel_of(hit ? p : corner)) == kVoxelExternal) continue;
@@ -102,8 +121,12 @@ void main() {
   const uint32_t item = flat_invocation() / kFieldTileLanes;
   if (item >= list_count(kListFieldTiles)) return;
   const FieldTile tile = field_tiles[item];
-  if (tile.across != 0u)
-    take_grid(tile);
-  else
+  if (LISTED ? tile.first_u == 2 && tile.across == 0u : tile.across != 0u) {
+    if (LISTED)
+      take_listed(tile);
+    else
+      take_grid(tile);
+  } else {
     take_extras(tile);
+  }
 }

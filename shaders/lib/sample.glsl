@@ -2,6 +2,7 @@
 #ifndef PALPATE_SAMPLE_GLSL
 #define PALPATE_SAMPLE_GLSL
 #include "shaders/lib/wide_integer.glsl"
+#include "shaders/shared/frame_field.h"
 
 struct SampledTriangle {
   ivec3 a, b, c;
@@ -38,6 +39,18 @@ ivec2 sample_of_cell(ivec2 ij, int32_t spacing) {
 ivec2 cell_of_sample(ivec2 g, int32_t spacing) {
   const ivec2 q = g / spacing;
   return q - ivec2(greaterThan(q * spacing, g));
+}
+
+// The last level that the sample of cell ij is of, at most kMostSampleLevel.
+uint32_t level_of_cell(ivec2 ij) {
+  for (uint32_t level = 0u; level < kMostSampleLevel; level += 2u) {
+    const ivec2 block = ij >> 1, within = ij & 1;
+    const ivec2 stands = ivec2(golden(block.y) >> 31, golden(block.x) >> 31);
+    if (all(notEqual(within, stands))) return level + 1u;
+    if (any(notEqual(within, stands))) return level;
+    ij = block;
+  }
+  return kMostSampleLevel;
 }
 
 // Whether the triangle has a sample at g = (u, v).

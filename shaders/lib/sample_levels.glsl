@@ -7,18 +7,6 @@
 #include "shaders/lib/list_room.glsl"
 #include "shaders/lib/sample.glsl"
 
-// The last level that the sample of cell ij is of, at most kMostSampleLevel.
-uint32_t level_of_cell(ivec2 ij) {
-  for (uint32_t level = 0u; level < kMostSampleLevel; level += 2u) {
-    const ivec2 block = ij >> 1, within = ij & 1;
-    const ivec2 stands = ivec2(golden(block.y) >> 31, golden(block.x) >> 31);
-    if (all(notEqual(within, stands))) return level + 1u;
-    if (any(notEqual(within, stands))) return level;
-    ij = block;
-  }
-  return kMostSampleLevel;
-}
-
 // 256 log2(count), count > 0, straight between powers of two.
 uint32_t log_q8(uint32_t count) {
   const uint32_t whole = uint32_t(findMSB(count));
@@ -60,11 +48,10 @@ uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u], uint32_t now) {
     if (level < taken) return 0ul;                                                                           \
     return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS(words + taken)) >> 30) << taken; \
   }                                                                                                          \
-  /* Q30. `base`: the triangle's field weight; `now`: its body's level. */                                   \
-  uint64_t NAME(uint32_t triangle, uint32_t base, ivec2 ij, uint32_t now) {                                  \
+  /* Q30. `base`: the triangle's field weight; `level`: the last one of the sample; `now`: its body's. */                                   \
+  uint64_t NAME(uint32_t triangle, uint32_t base, uint32_t level, uint32_t now) {                                  \
     const uint32_t place = LEVELS(triangle), part = now & 255u;                                              \
     if (place == 0u || now == 0u) return uint64_t(base);                                                     \
-    const uint32_t level = level_of_cell(ij);                                                                \
     return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) +                                \
             uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >>                              \
            8;                                                                                                \

@@ -35,13 +35,19 @@ PALPATE_CONSTANT int32_t kBindMockupShells =
 PALPATE_CONSTANT int32_t kBindFineShells =
     109;  // likewise of the tool's fine partition, where it has an inside
 
-PALPATE_CONSTANT int32_t kBindMockupTree =
-    110;  // texels: kTreeHeadTexels of shared/scene.h and what follows
-PALPATE_CONSTANT int32_t kBindToolTree = 111;  // likewise, tool lattice frame
+PALPATE_CONSTANT int32_t kBindMockupTree = 110;  // texels: kTreeHeadTexels of shared/scene.h and what follows
+PALPATE_CONSTANT int32_t kBindToolTree = 111;    // likewise, tool lattice frame
+
+PALPATE_CONSTANT int32_t kBindToolSamplePoints =
+    120;  // texels: the tool's grid samples, by triangle, those of the highest level first: point, level
+PALPATE_CONSTANT int32_t kBindToolSampleEnds =
+    121;  // texels, kSampleEndTexels a triangle: with which sample it begins, how many it has, and of these
+          // how many are of at least level 1, 2, …
 
 PALPATE_CONSTANT uint32_t kMostSampleLevel = 6u;   // kSampleLevels of model/lattice/lattice_mesh.h
 PALPATE_CONSTANT uint32_t kMostSurfaceLevel = 4u;  // kSurfaceLevels
 PALPATE_CONSTANT uint32_t kSideLevelWords = 1u + kMostSampleLevel;
+PALPATE_CONSTANT uint32_t kSampleEndTexels = 2u;  // 1 + 1 + kMostSampleLevel words
 
 PALPATE_CONSTANT uint32_t kListFieldTiles = 16u;
 PALPATE_CONSTANT uint32_t kListMockupPoints = 17u;
@@ -74,8 +80,8 @@ struct FieldPoint {
 PALPATE_CONSTANT uint32_t kExtraPoint = 1u << 31;  // more triangles than this do not fit a lattice mesh
 
 // Cells begin … end − 1 of a tool triangle's box, which is `across` cells wide and begins at cell (first_u,
-// first_v), row by row. Or, where `across` is 0, extra samples begin … end − 1: first_u 0, of the tool; 1, of
-// the mock-up.
+// first_v), row by row. Or, where `across` is 0, samples begin … end − 1: first_u 0, extra ones of the tool;
+// 1, of the mock-up; 2, listed ones of the tool's grid.
 struct FieldTile {
   uint32_t triangle;  // of a batch: entry of the tables
   int32_t first_u, first_v;

@@ -76,6 +76,22 @@ struct SampleListPush {
 };
 PALPATE_ASSERT_SIZE(SampleListPush, 48);
 
+// Cells begin … end − 1, row by row, of a tool triangle's box, which is `across` cells wide and begins at
+// cell (first_u, first_v).
+struct ToolSampleTile {
+  uint32_t triangle;
+  int32_t first_u, first_v;
+  uint32_t across, begin, end;
+};
+PALPATE_ASSERT_SIZE(ToolSampleTile, 24);
+
+// Push constants of tool_sample_list.comp.
+struct ToolSamplePush {
+  uint32_t count;  // tiles
+  int32_t spacing;
+};
+PALPATE_ASSERT_SIZE(ToolSamplePush, 8);
+
 // begins[] after the samples were written (compute/scene/samples.h).
 PALPATE_CONSTANT uint32_t kSampleCorner = 1u << 29;
 PALPATE_CONSTANT uint32_t kSampleAxisShift = 30u;

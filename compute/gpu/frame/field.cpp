@@ -54,7 +54,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   out.plan_ = plan;
   const BodyConstants &mockup = scene.constants.mockup, &tool = scene.constants.tool;
   out.inside_ = tool.closed != 0 || tool.has_internal != 0;
-  const std::uint32_t inside = out.inside_ ? 1 : 0;
+  const std::uint32_t inside = out.inside_ ? 1 : 0, listed = scene.tool_sample_points ? 1 : 0;
   struct ShaderPlan {
     FrameShader& shader;
     const ShaderCode& code;
@@ -62,8 +62,8 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
     bool kept = true;
   };
   for (const ShaderPlan& made_for : std::initializer_list<ShaderPlan>{
-           {out.members_, spirv::field_members, {{0, inside}}},
-           {out.points_, spirv::field_points},
+           {out.members_, spirv::field_members, {{0, inside}, {1, listed}}},
+           {out.points_, spirv::field_points, {{1, listed}}},
            {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}}, out.inside_},
            {out.from_tool_, spirv::field_from_tool, {{0, mockup.closed}, {1, inside}}},
            {out.result_, spirv::field_result},
@@ -120,6 +120,10 @@ Result<void> FrameField::make_buffers(VulkanDevice& device, const FrameCapacity&
   for (const std::int32_t binding : {kBindFineExit, kBindMockupShells, kBindFineShells})
     if (buffers.bytes(binding) == 0)  // whether a body is closed says what of them anybody reads
       if (auto made = buffers.make(device, binding, "unused", 4); !made) return made.error();
+  for (const std::int32_t binding : {kBindToolSamplePoints, kBindToolSampleEnds})
+    if (buffers.bytes(binding) == 0)  // samples that are not listed
+      if (auto made = buffers.make(device, binding, "unused", 16, BufferKind::kTexels); !made)
+        return made.error();
   if (auto made = buffers.make_table(device, kBindFieldWork, "pressure field", field); !made)
     return made.error();
   return buffers.make_table(device, kBindIgnoredState, "states of ignored patches", patches);

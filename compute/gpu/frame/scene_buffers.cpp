@@ -50,7 +50,9 @@ void name_scene(const PreparedScene& scene, FrameBuffers& buffers) {
       {kBindToolNear, &scene.tool_near},
       {kBindSampleBegin, &scene.sample_begin},
       {kBindSamplePoints, &scene.sample_points},
-      {kBindSampleIds, &scene.sample_ids}};
+      {kBindSampleIds, &scene.sample_ids},
+      {kBindToolSamplePoints, &scene.tool_sample_points},
+      {kBindToolSampleEnds, &scene.tool_sample_ends}};
   for (const auto& [binding, buffer] : all)
     if (*buffer) buffers.name(binding, *buffer);  // `paper` has no partition of the tool
 }

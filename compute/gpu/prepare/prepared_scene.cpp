@@ -162,6 +162,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
     if (!geometry.tool.closed && out.tool.partition.has_internal) count_shells(steps, tool_pairs, out.tool);
     steps.progress("samples", 0.95);
     refine_tool(steps, geometry, out);
+    list_tool_samples(steps, geometry, out);
     if (geometry.tool.closed || out.tool.partition.has_internal) list_samples(steps, geometry, pairs, out);
   } else {
     make_empty(steps, out.tool.partition);

@@ -61,6 +61,9 @@ struct PreparedScene {
                                ///< where there is too much of them: frames work samples out
   VulkanBuffer sample_points;  ///< uint32: kBindSamplePoints
   VulkanBuffer sample_ids;     ///< uint32, one a point
+  VulkanBuffer tool_sample_points;  ///< texels: kBindToolSamplePoints; with the next one empty where there
+                                    ///< are too many: frames work them out
+  VulkanBuffer tool_sample_ends;    ///< texels: kBindToolSampleEnds
   std::uint64_t memory_bytes() const;
 };
 
@@ -84,7 +87,8 @@ void for_each_made_buffer(Scene& scene, Visit visit) {
   });
   for (auto* buffer :
        {&scene.fine_exit, &scene.tool_near, &scene.occupied, &scene.list_boxes, &scene.sample_begin,
-        &scene.sample_points, &scene.sample_ids, &scene.mockup.tree, &scene.tool.tree})
+        &scene.sample_points, &scene.sample_ids, &scene.tool_sample_points, &scene.tool_sample_ends,
+        &scene.mockup.tree, &scene.tool.tree})
     visit(*buffer);
 }
 

@@ -12,9 +12,11 @@
 #include "compute/scene/samples.h"
 #include "compute/scene/shares.h"
 #include "compute/scene/tool_solid.h"
+#include "model/lattice/sample_grid.h"
 #include "model/scene/geometry_build.h"
 #include "shaders/code.h"
 #include "shaders/shared/frame.h"
+#include "shaders/shared/frame_field.h"
 #include "shaders/shared/prepare.h"
 
 namespace palpate {
@@ -23,6 +25,40 @@ namespace {
 constexpr std::uint64_t kSamplesARun =
     std::uint64_t{1} << 22;  // listed by one submission (chosen: 16 or 32 MiB; an entry has at most 2^12)
 constexpr std::uint64_t kMostSampleBytes = std::uint64_t{1} << 30;  // on the host (chosen)
+
+constexpr std::uint64_t kMostToolCells = std::uint64_t{1} << 26;    // looked at (chosen: a second or two)
+constexpr std::uint64_t kMostToolSamples = std::uint64_t{1} << 22;  // (chosen: 64 MiB)
+constexpr std::uint64_t kTileCells = 1024;                          // of an invocation (chosen)
+
+/// A texel of kBindToolSamplePoints.
+struct ToolSample {
+  Int3 point;
+  std::uint32_t level;
+};
+
+/// The boxes of triangles whose grid samples weigh something, in tiles. Empty where they have too many cells.
+std::vector<gpu::ToolSampleTile> sample_tiles(const LatticeMesh& tool, std::int32_t spacing) {
+  std::vector<gpu::ToolSampleTile> out;
+  const SampleGrid grid{spacing};
+  std::uint64_t all = 0;
+  for (std::uint32_t id = 0; id < tool.triangles.size(); ++id) {
+    if (tool.collapsed(id) || tool.field_weight_q30[id] == 0) continue;
+    const int axis = tool.sample_axis[id], u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const Int3 a = tool.corner(id, 0), b = tool.corner(id, 1), c = tool.corner(id, 2);
+    const auto [low_u, high_u] = std::minmax({a[u], b[u], c[u]});
+    const auto [low_v, high_v] = std::minmax({a[v], b[v], c[v]});
+    const std::int64_t first_u = grid.cell(low_u), first_v = grid.cell(low_v);
+    const auto across = static_cast<std::uint64_t>(grid.cell(high_u) - first_u + 1),
+               cells = across * static_cast<std::uint64_t>(grid.cell(high_v) - first_v + 1);
+    all += cells;
+    if (all > kMostToolCells) return {};
+    for (std::uint64_t begin = 0; begin < cells; begin += kTileCells)
+      out.push_back({id, static_cast<std::int32_t>(first_u), static_cast<std::int32_t>(first_v),
+                     static_cast<std::uint32_t>(across), static_cast<std::uint32_t>(begin),
+                     static_cast<std::uint32_t>(std::min(begin + kTileCells, cells))});
+  }
+  return out;
+}
 
 /// Voxel by voxel what has been listed entry by entry, in all. Left out where a buffer would be beyond the
 /// device's limits.
@@ -141,6 +177,55 @@ void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const Voxe
   PartitionCopy lists;
   if (auto r = lists.read(steps.device(), p); !r) return steps.fail(r.error());
   upload_points(steps, geometry, lists.view(), std::move(samples), out);
+}
+
+void list_tool_samples(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {
+  if (!steps.ok()) return;
+  const LatticeMesh& tool = geometry.tool;
+  const std::vector<gpu::ToolSampleTile> tiles = sample_tiles(tool, geometry.sample_spacing);
+  if (tiles.empty()) return;
+  const gpu::ToolSamplePush push{static_cast<std::uint32_t>(tiles.size()), geometry.sample_spacing};
+  const VulkanBuffer of_tiles = steps.filled("tiles of the tool's samples", tiles),
+                     begins = steps.buffer("begins of the tool's samples", std::uint64_t{push.count} + 1),
+                     unused = steps.buffer("unused", 4);
+  const auto run = [&](std::uint32_t emit, const VulkanBuffer& samples) {
+    steps.run_items(
+        spirv::tool_sample_list, {emit},
+        {out.tool.vertices, out.tool.triangles, out.tool.triangle_info, of_tiles, begins, samples}, push,
+        push.count);
+  };
+  if (!steps.ok()) return;
+  run(0, unused);
+  const std::uint64_t total = steps.scan("samples of the tool", begins, push.count);
+  if (!steps.ok() || total == 0 || total > kMostToolSamples) return;
+  const VulkanBuffer samples = steps.buffer("the tool's samples", total, sizeof(ToolSample));
+  if (!steps.ok()) return;
+  run(1, samples);
+  std::vector<std::uint32_t> begin(tiles.size() + 1);
+  std::vector<ToolSample> listed(total);
+  if (!steps.ok()) return;
+  if (auto r = download(steps.device(), begins, 0, begin.data(), begin.size() * 4); !r)
+    return steps.fail(r.error());
+  if (auto r = download(steps.device(), samples, 0, listed.data(), listed.size() * sizeof(ToolSample)); !r)
+    return steps.fail(r.error());
+
+  constexpr std::size_t kWords = 4 * gpu::kSampleEndTexels;
+  std::vector<std::uint32_t> ends(kWords * tool.triangles.size());
+  for (std::size_t tile = 0; tile < tiles.size();) {
+    const std::uint32_t triangle = tiles[tile].triangle;
+    const auto first = listed.begin() + begin[tile];
+    while (tile < tiles.size() && tiles[tile].triangle == triangle) ++tile;
+    const auto last = listed.begin() + begin[tile];
+    std::stable_sort(first, last, [](const ToolSample& a, const ToolSample& b) { return a.level > b.level; });
+    std::uint32_t* const words = &ends[kWords * triangle];
+    words[0] = static_cast<std::uint32_t>(first - listed.begin());
+    for (std::uint32_t level = 0; level <= gpu::kMostSampleLevel; ++level)
+      words[1 + level] = static_cast<std::uint32_t>(
+          std::count_if(first, last, [&](const ToolSample& sample) { return sample.level >= level; }));
+  }
+  out.tool_sample_points = steps.filled("the tool's samples", listed.data(), listed.size(),
+                                        sizeof(ToolSample), BufferKind::kTexels);
+  out.tool_sample_ends = steps.texels("ends of the tool's samples", ends);
 }
 
 void refine_tool(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out) {

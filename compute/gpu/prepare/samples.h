@@ -12,6 +12,10 @@ namespace palpate {
 void list_samples(PrepareSteps& steps, const SceneGeometry& geometry, const VoxelPairs& pairs,
                   PreparedScene& out);
 
+/// Lists the tool's grid samples that the field may count, triangle by triangle, in its own frame. Leaves
+/// `out.tool_sample_points` empty where there are too many.
+void list_tool_samples(PrepareSteps& steps, const SceneGeometry& geometry, PreparedScene& out);
+
 /// What frames ask of a closed tool before they count windings: a partition of it in voxels a quarter as
 /// wide, the way out of each of its boundary voxels, and which voxels of the tool's own grid are near to its
 /// solid. Where a finer partition is not worth its memory, `out.fine` stays empty and the tool's own serves.
