@@ -39,6 +39,7 @@ EDIT(kBindPairs, ContactPair, pairs);
 // What a round has found among its entries, PAIR_CHUNK an invocation, as static triangle + 2^32 · invocation:
 // from the front on what may meet, from the back what is to be marked.
 const uint32_t kRoom = 2u * PAIR_CHUNK * kGroupSize;
+const uint32_t kEntryCost = 3u;   // with what putting it by takes: what has been reserved is filled
 shared uint64_t found[kRoom];
 shared uint32_t meet_count, mark_count, unfinished;
 shared int32_t corners[9u * kGroupSize];   // of the invocations' tool triangles
@@ -134,6 +135,10 @@ bool is_new(uint32_t id, uint32_t place) {
   return true;
 }
 
+uint64_t work_of(uint32_t listed, uint32_t lane) {
+  return uint64_t(mockup_list_triangles(listed)) | uint64_t(lane) << 32;
+}
+
 void decide(uint64_t work) {
   const uint32_t id = uint32_t(work), lane = uint32_t(work >> 32), place = places[lane];
   go_on_for(lane);
@@ -160,11 +165,17 @@ void main() {
   while (again) {
     if (lane == 0u) meet_count = mark_count = unfinished = 0u;
     barrier();
-    const uint32_t last = min(entry + PAIR_CHUNK, end);
-    for (; entry < last && !spent(1u); ++entry) {
-      const uint64_t work = uint64_t(mockup_list_triangles(entry)) | uint64_t(lane) << 32;
-      if (is_first) found[kRoom - 1u - atomicAdd(mark_count, 1u)] = work;
-      if (may_meet(list_boxes(entry))) found[atomicAdd(meet_count, 1u)] = work;
+    const uint32_t first = entry, last = min(entry + PAIR_CHUNK, end);
+    uint32_t meet = 0u;   // bits: which of them may
+    for (; entry < last && !spent(kEntryCost); ++entry)
+      meet |= uint32_t(may_meet(list_boxes(entry))) << (entry - first);
+    if (is_first && first < entry) {
+      uint32_t at = kRoom - atomicAdd(mark_count, entry - first);
+      for (uint32_t i = first; i < entry; ++i) found[--at] = work_of(i, lane);
+    }
+    if (meet != 0u) {
+      uint32_t at = atomicAdd(meet_count, uint32_t(bitCount(meet)));
+      for (; meet != 0u; meet &= meet - 1u) found[at++] = work_of(first + uint32_t(findLSB(meet)), lane);
     }
     if (entry < end && loop_budget < kLoopBudget) unfinished = 1u;
     barrier();

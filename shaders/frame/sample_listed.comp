@@ -37,6 +37,7 @@ EDIT(kBindSamples, FrameSample, samples);
 #include "shaders/lib/partition.glsl"
 
 const uint32_t kRoom = LISTED_CHUNK * kGroupSize;
+const uint32_t kPointCost = 2u;   // with what putting it by takes: what has been reserved is filled
 shared uint64_t found[kRoom];   // a round's points that are not in V_ext: point + 2^32 · invocation
 shared int32_t lows[3u * kGroupSize];   // of the invocations' voxels
 shared uint32_t inside_count, open_count, unfinished;
@@ -86,15 +87,23 @@ void main() {
   while (again) {
     if (lane == 0u) inside_count = open_count = unfinished = 0u;
     barrier();
-    const uint32_t last = min(point + LISTED_CHUNK, end);
-    for (; point < last && !spent(1u); ++point) {
-      const ivec3 at = low + point_at(point);
-      const uint32_t voxel_class = fine_class_of(fine_voxel_of(tool_from_world(at)));
-      if (voxel_class == kVoxelExternal) continue;
-      // Those of V_int from the front on, the others from the back.
-      const uint32_t place = voxel_class == kVoxelInternal ? atomicAdd(inside_count, 1u)
-                                                           : kRoom - 1u - atomicAdd(open_count, 1u);
-      found[place] = uint64_t(point) | uint64_t(lane) << 32;
+    const uint32_t first = point, last = min(point + LISTED_CHUNK, end);
+    uint32_t in_solid = 0u, near_surface = 0u;   // bits: which of them are
+    for (; point < last && !spent(kPointCost); ++point) {
+      const uint32_t voxel_class = fine_class_of(fine_voxel_of(tool_from_world(low + point_at(point))));
+      in_solid |= uint32_t(voxel_class == kVoxelInternal) << (point - first);
+      near_surface |= uint32_t(voxel_class == kVoxelBoundary) << (point - first);
+    }
+    // Those of V_int from the front on, the others from the back.
+    if (in_solid != 0u) {
+      uint32_t at = atomicAdd(inside_count, uint32_t(bitCount(in_solid)));
+      for (; in_solid != 0u; in_solid &= in_solid - 1u)
+        found[at++] = uint64_t(first + uint32_t(findLSB(in_solid))) | uint64_t(lane) << 32;
+    }
+    if (near_surface != 0u) {
+      uint32_t at = kRoom - atomicAdd(open_count, uint32_t(bitCount(near_surface)));
+      for (; near_surface != 0u; near_surface &= near_surface - 1u)
+        found[--at] = uint64_t(first + uint32_t(findLSB(near_surface))) | uint64_t(lane) << 32;
     }
     if (point < end && loop_budget < kLoopBudget) unfinished = 1u;
     barrier();

@@ -1,5 +1,6 @@
 #include "compute/gpu/frame/plan.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace palpate {
@@ -24,6 +25,9 @@ constexpr WorkCut kFine{.clusters = 8,
             .pair_chunk = 16,
             .listed_chunk = 16,
             .field_tile = 64};
+// Shaders keep a bit for each of a chunk.
+static_assert(std::max({kFine.pair_chunk, kCoarse.pair_chunk, kFine.listed_chunk, kCoarse.listed_chunk}) <=
+              32);
 
 }  // namespace
 
