@@ -18,8 +18,8 @@ namespace palpate {
 
 /// A whole buffer, or a part of one, bound to a shader.
 struct BufferView {
-  BufferView(const VulkanBuffer& whole)
-      : buffer(whole.handle()), texels(whole.texels()) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  BufferView(const VulkanBuffer& whole) : buffer(whole.handle()), texels(whole.texels()) {}
   BufferView(const VulkanBuffer& part, std::uint64_t from, std::uint64_t length)
       : buffer(part.handle()), offset(from), bytes(length) {}
   VkBuffer buffer;

@@ -277,6 +277,7 @@ Result<void> VulkanDevice::make_device(bool own_memory) {
   if (const auto left = address_space_left())
     limits_.heap = std::min(limits_.heap, *left - std::min(*left, kDriverAddressSpace / 2));
   processor_ = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !own_memory;
+  texels_ = processor_ && p.properties.limits.maxTexelBufferElements >= limits_.storage_range / 4;
   unified_ = processor_ || (p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU && !own_memory);
   const bool shares = processor_ && has_extension(physical_, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
   if (shares) {

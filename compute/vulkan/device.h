@@ -59,7 +59,7 @@ class VulkanDevice {
   bool processor() const { return processor_; }
 
   /// Shaders look things up in texel buffers (shaders/lib/frame.glsl): llvmpipe takes a texel in one piece.
-  bool texels() const { return processor_; }
+  bool texels() const { return texels_; }
 
   /// Buffers lie in host memory that several devices may import at once (lavapipe): what one has made,
   /// another can use without a copy.
@@ -127,6 +127,7 @@ class VulkanDevice {
   std::string name_, driver_;
   bool unified_ = false;
   bool processor_ = false;
+  bool texels_ = false;
   std::uint64_t page_ = 0;  ///< 0: does not share memory
   std::shared_ptr<GpuFault> fault_;
   std::mutex message_mutex_;

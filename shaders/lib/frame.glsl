@@ -23,8 +23,8 @@ layout(constant_id = 25) const uint32_t FIELD_TILE = 64u;
 #define EDIT(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name[]; }
 #define READ_ONE(bind, T, name) \
   layout(set = 0, binding = bind, scalar) readonly buffer name##_block { T name; }
-// A small T that no shader of the frame writes: a uniform buffer, which llvmpipe reads once for all lanes. By
-// is_uniform() of frame.h.
+// A small T that no shader of the frame writes: a uniform buffer, which llvmpipe reads once for all lanes:
+// kBindScene and kBindFrameInput (make_frame_shader() of compute/gpu/frame/recorder.cpp).
 #define CONSTANT(bind, T, name) layout(set = 0, binding = bind, scalar) uniform name##_block { T name; }
 #define EDIT_ONE(bind, T, name) layout(set = 0, binding = bind, scalar) buffer name##_block { T name; }
 
@@ -46,8 +46,9 @@ layout(constant_id = 25) const uint32_t FIELD_TILE = 64u;
              texelFetch(name##_texels, at + 2).x);                                                 \
   }
 #else
-#define TEXELS(bind, name)            \
-  READ(bind, uvec4, name##_texels);   \
+// std430 says that a texel is aligned: a GPU loads it at once.
+#define TEXELS(bind, name)                                                                        \
+  layout(set = 0, binding = bind, std430) readonly buffer name##_block { uvec4 name##_texels[]; }; \
   uvec4 name(uint32_t i) { return name##_texels[i]; }
 #define WORDS(bind, T, name)          \
   READ(bind, T, name##_words);        \
