@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Where a buffer lives. On unified devices (lavapipe) all three are the same mapped memory.
+/// Where a buffer lives. On unified devices (lavapipe) all of them are the same mapped memory.
 enum class BufferKind {
   kDevice,    ///< fast for shaders; mapped only on unified devices
   kTexels,    ///< the same, which shaders see in texels of four words

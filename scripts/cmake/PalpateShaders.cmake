@@ -2,8 +2,8 @@
 #
 # palpate_shaders(palpate_shaders shaders/code.h a.comp b.comp): a static library with one `ShaderCode` a
 # file, named like the file, in namespace palpate::spirv, declared in the header "shaders/code.h" of the build
-# tree, with its module as it is and as it is with PALPATE_TEXELS. Each module passes spirv-val; depfiles make a change in an included file rebuild what it touches and
-# nothing else.
+# tree, with its module as it is and as it is with PALPATE_TEXELS. Each module passes spirv-val; depfiles make
+# a change in an included file rebuild what it touches and nothing else.
 
 find_program(PALPATE_GLSLANG glslangValidator REQUIRED)
 find_program(PALPATE_SPIRV_VAL spirv-val REQUIRED)

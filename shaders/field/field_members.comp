@@ -50,12 +50,12 @@ uvec2 take_tiles(uint32_t tiles) {
   return uvec2(first, end);
 }
 
-void list_extras(int32_t body, uint32_t entry, uvec2 extras) {
+void list_extras(int32_t which, uint32_t entry, uvec2 extras) {
   if (extras.x == extras.y) return;
   const uvec2 tiles = take_tiles((extras.y - extras.x + kExtraTile - 1u) / kExtraTile);
   for (uint32_t t = tiles.x; t < tiles.y && !spent(1u); ++t) {
     const uint32_t begin = extras.x + (t - tiles.x) * kExtraTile;
-    field_tiles[t] = FieldTile(entry, body, 0, 0u, begin, min(begin + kExtraTile, extras.y));
+    field_tiles[t] = FieldTile(entry, which, 0, 0u, begin, min(begin + kExtraTile, extras.y));
   }
 }
 
@@ -97,7 +97,7 @@ void list_samples(uint32_t mobile, uint32_t entry) {
   const uvec2 tiles = take_tiles((count + tile - 1u) / tile);
   for (uint32_t t = tiles.x; t < tiles.y && !spent(1u); ++t) {
     const uint32_t first = (t - tiles.x) * tile;
-    field_tiles[t] = FieldTile(entry, 2, 0, 0u, begin.x + first, begin.x + min(first + tile, count));
+    field_tiles[t] = FieldTile(entry, kTileToolSamples, 0, 0u, begin.x + first, begin.x + min(first + tile, count));
   }
 }
 
@@ -109,7 +109,7 @@ void take_static(uint32_t slot) {
   if (CARRIERS)
     for (uint32_t i = 0u; i < kCarrierWords; ++i) carrier_work[kCarrierWords * slot + i] = 0l;
   if (INSIDE && (mockup_info(id) & kInfoHasExtra) != 0u)
-    list_extras(1, entry, mockup_extras_of(id, scene.mockup_extras));
+    list_extras(kTileMockupExtras, entry, mockup_extras_of(id, scene.mockup_extras));
 }
 
 void take_mobile(uint32_t place) {
@@ -118,7 +118,7 @@ void take_mobile(uint32_t place) {
   name_mobile(place);
   if (!in_contact()) return;
   const uint32_t mobile = mobile_id(entry), info = tool_info(mobile);
-  if ((info & kInfoHasExtra) != 0u) list_extras(0, entry, tool_extras_of(mobile, scene.tool_extras));
+  if ((info & kInfoHasExtra) != 0u) list_extras(kTileToolExtras, entry, tool_extras_of(mobile, scene.tool_extras));
   if (tool_weights(mobile) == 0u) return;
   if (LISTED)
     list_samples(mobile, entry);
@@ -134,7 +134,8 @@ void take_sample(uint32_t i) {
   const uint32_t axis = mockup_info(id) >> kInfoAxisShift & 3u;
   const ivec2 ij =
       cell_of_sample(ivec2(work.point[(axis + 1u) % 3u], work.point[(axis + 2u) % 3u]), scene.sample_spacing);
-  const uint32_t weight = uint32_t(mockup_weight(id, mockup_weights(id), level_of_cell(ij), mockup_level()) >> 6);
+  const uint32_t weight =
+      uint32_t(mockup_weight(id, mockup_weights(id), level_of_cell(ij), mockup_level()) >> 6);
   if (weight == 0u) return;
   const uint32_t at = take_room(kListMockupPoints, 1u);
   if (at >= frame_lists[kListMockupPoints].capacity) return;

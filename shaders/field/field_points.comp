@@ -1,6 +1,6 @@
 #version 460
-// kFieldTileLanes invocations: a tile of a tool triangle's samples, listed or a cell of its grid each at a time, or of
-// extra samples.
+// kFieldTileLanes invocations: a tile of a tool triangle's samples, listed or a cell of its grid each at a
+// time, or of extra samples.
 // Lists the samples that weigh something; of the tool's grid those that lie in a V_bnd or V_int voxel of the
 // mock-up, or with their triangle's first corner where it touches nothing.
 // Reads field_tiles, both bodies' extra samples, the tool in its own frame, the mock-up's partition. Writes
@@ -94,7 +94,8 @@ void take_grid(FieldTile tile) {
   const uint32_t base = tool_weights(mobile), level = tool_level();
   const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
   const ivec3 corner = world_from_tool(a);
-  for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end; cell += kFieldTileLanes) {
+  for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end;
+       cell += kFieldTileLanes) {
     const ivec2 ij = ivec2(tile.first_u, tile.first_v) + ivec2(cell % tile.across, cell / tile.across),
                 g = sample_of_cell(ij, spacing);
     if (!grid_point_inside(triangle, g)) continue;
@@ -107,7 +108,7 @@ void take_grid(FieldTile tile) {
 }
 
 void take_extras(FieldTile tile) {
-  const bool of_mockup = tile.first_u != 0;
+  const bool of_mockup = tile.first_u == kTileMockupExtras;
   take_pose(of_mockup ? static_pose(tile.triangle) : mobile_pose(tile.triangle));
   const uint32_t level = of_mockup ? mockup_level() : tool_level();
   for (uint32_t i = tile.begin + flat_invocation() % kFieldTileLanes; i < tile.end; i += kFieldTileLanes)
@@ -121,12 +122,10 @@ void main() {
   const uint32_t item = flat_invocation() / kFieldTileLanes;
   if (item >= list_count(kListFieldTiles)) return;
   const FieldTile tile = field_tiles[item];
-  if (LISTED ? tile.first_u == 2 && tile.across == 0u : tile.across != 0u) {
-    if (LISTED)
-      take_listed(tile);
-    else
-      take_grid(tile);
-  } else {
+  if (LISTED && tile.first_u == kTileToolSamples)
+    take_listed(tile);
+  else if (!LISTED && tile.across != 0u)
+    take_grid(tile);
+  else
     take_extras(tile);
-  }
 }

@@ -157,7 +157,8 @@ bool step(uint32_t lane) {
   uint32_t bits = uint32_t(crossed);   // of V_int: all of it by its first voxel
   if (mixed) {
     const uint32_t word = uint32_t(half_y | z << 1);
-    bits = (mockup_bricks(kBrickWords * slot + word) | mockup_bricks(kBrickWords * slot + kBrickInternalWord + word)) & in_box(low, high) &
+    const uint32_t at = kBrickWords * slot + word;
+    bits = (mockup_bricks(at) | mockup_bricks(at + kBrickInternalWord)) & in_box(low, high) &
            on_plane(brick_low + size * ivec3(0, 4 * half_y, z));
     voxel += uvec3(0, 4 * half_y, z);
   }

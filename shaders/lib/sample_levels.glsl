@@ -42,18 +42,18 @@ uint64_t extra_weight(uint32_t weights[kMostSurfaceLevel + 1u], uint32_t now) {
 }
 
 // LEVELS: WORDS (kBindMockupLevels of shared/frame_field.h).
-#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                               \
-  uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                       \
-    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS(words));   \
-    if (level < taken) return 0ul;                                                                           \
-    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS(words + taken)) >> 30) << taken; \
-  }                                                                                                          \
-  /* Q30. `base`: the triangle's field weight; `level`: the last one of the sample; `now`: its body's. */                                   \
-  uint64_t NAME(uint32_t triangle, uint32_t base, uint32_t level, uint32_t now) {                                  \
-    const uint32_t place = LEVELS(triangle), part = now & 255u;                                              \
-    if (place == 0u || now == 0u) return uint64_t(base);                                                     \
-    return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) +                                \
-            uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >>                              \
-           8;                                                                                                \
+#define SAMPLE_WEIGHT(NAME, LEVELS, TRIANGLES)                                                                 \
+  uint64_t NAME##_at(uint32_t base, uint32_t place, uint32_t level, uint32_t wanted) {                         \
+    const uint32_t words = TRIANGLES + kSideLevelWords * (place - 1u), taken = min(wanted, LEVELS(words));     \
+    if (level < taken) return 0ul;                                                                             \
+    return taken == 0u ? uint64_t(base) : (uint64_t(base) * uint64_t(LEVELS(words + taken)) >> 30) << taken;   \
+  }                                                                                                            \
+  /* Q30. `base`: the triangle's field weight; `level`: the last one of the sample; `now`: its body's. */      \
+  uint64_t NAME(uint32_t triangle, uint32_t base, uint32_t level, uint32_t now) {                              \
+    const uint32_t place = LEVELS(triangle), part = now & 255u;                                                \
+    if (place == 0u || now == 0u) return uint64_t(base);                                                       \
+    return (uint64_t(256u - part) * NAME##_at(base, place, level, now >> 8) +                                  \
+            uint64_t(part) * NAME##_at(base, place, level, (now >> 8) + 1u)) >>                                \
+           8;                                                                                                  \
   }
 #endif

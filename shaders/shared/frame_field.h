@@ -80,8 +80,10 @@ struct FieldPoint {
 PALPATE_CONSTANT uint32_t kExtraPoint = 1u << 31;  // more triangles than this do not fit a lattice mesh
 
 // Cells begin … end − 1 of a tool triangle's box, which is `across` cells wide and begins at cell (first_u,
-// first_v), row by row. Or, where `across` is 0, samples begin … end − 1: first_u 0, extra ones of the tool;
-// 1, of the mock-up; 2, listed ones of the tool's grid.
+// first_v), row by row. Or, where `across` is 0, samples begin … end − 1, and first_u says which.
+PALPATE_CONSTANT int32_t kTileToolExtras = 0;    // extra ones of the tool
+PALPATE_CONSTANT int32_t kTileMockupExtras = 1;  // of the mock-up
+PALPATE_CONSTANT int32_t kTileToolSamples = 2;   // listed ones of the tool's grid
 struct FieldTile {
   uint32_t triangle;  // of a batch: entry of the tables
   int32_t first_u, first_v;

@@ -29,27 +29,21 @@ void for_each_binding(std::span<std::uint32_t> words, F f) {
   }
 }
 
-/// Bindings whose number of entries a module asks.
-std::vector<std::int32_t> measured_bindings(std::span<const std::uint32_t> words) {
-  std::map<std::uint32_t, std::int32_t> binding_of;  // by variable; decorations stand before all code
-  std::vector<std::int32_t> measured;
-  for (std::size_t i = kHeaderWords; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16) {
-    const std::uint32_t opcode = words[i] & 0xFFFFu;
-    if (opcode == kOpDecorate && words[i + 2] == kDecorationBinding)
-      binding_of[words[i + 1]] = static_cast<std::int32_t>(words[i + 3]);
-    if (opcode == kOpArrayLength) measured.push_back(binding_of.at(words[i + 3]));
-  }
-  return measured;
-}
+/// What a module says of its bindings.
+struct ModuleBindings {
+  std::vector<std::uint32_t> measured;  ///< whose number of entries it asks
+  std::vector<std::uint32_t> texels;    ///< that it sees as texels
+};
 
-/// Bindings that a module sees as texels.
-std::vector<std::uint32_t> texel_bindings(std::span<const std::uint32_t> words) {
-  std::map<std::uint32_t, std::uint32_t> binding_of;  // by variable; decorations stand before all of these
-  std::vector<std::uint32_t> out;
+ModuleBindings bindings_of(std::span<const std::uint32_t> words) {
+  std::map<std::uint32_t, std::uint32_t> binding_of;  // by variable; decorations stand before all else
+  ModuleBindings out;
   for (std::size_t i = kHeaderWords; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16) {
     const std::uint32_t opcode = words[i] & 0xFFFFu;
     if (opcode == kOpDecorate && words[i + 2] == kDecorationBinding) binding_of[words[i + 1]] = words[i + 3];
-    if (opcode == kOpVariable && words[i + 3] == kUniformConstant) out.push_back(binding_of.at(words[i + 2]));
+    if (opcode == kOpArrayLength) out.measured.push_back(binding_of.at(words[i + 3]));
+    if (opcode == kOpVariable && words[i + 3] == kUniformConstant)
+      out.texels.push_back(binding_of.at(words[i + 2]));
   }
   return out;
 }
@@ -106,7 +100,8 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
       texels ? std::span(code.texel_words, code.texel_bytes / 4) : std::span(code.words, code.bytes / 4);
   std::vector<std::uint32_t> words(module.begin(), module.end());
   for_each_binding(words, [&](std::uint32_t& b) { out.bindings.push_back(static_cast<std::int32_t>(b)); });
-  out.measured = measured_bindings(words);
+  const ModuleBindings found = bindings_of(words);
+  out.measured.assign(found.measured.begin(), found.measured.end());
   std::sort(out.bindings.begin(), out.bindings.end());
   out.bindings.erase(std::unique(out.bindings.begin(), out.bindings.end()), out.bindings.end());
   for_each_binding(words, [&](std::uint32_t& b) {
@@ -117,7 +112,10 @@ Result<FrameShader> make_frame_shader(VulkanDevice& device, const ShaderCode& co
   for (std::size_t i = 0; i < out.bindings.size(); ++i)
     if (out.bindings[i] == gpu::kBindScene || out.bindings[i] == gpu::kBindFrameInput)
       kinds.uniform |= 1u << i;
-  for (const std::uint32_t packed : texel_bindings(words)) kinds.texels |= 1u << packed;
+  for (const std::uint32_t texels_of : found.texels)
+    kinds.texels |= 1u << (std::lower_bound(out.bindings.begin(), out.bindings.end(),
+                                            static_cast<std::int32_t>(texels_of)) -
+                           out.bindings.begin());
   auto pipeline =
       ComputePipeline::create(device, {code.name, words.data(), 4 * words.size()},
                               static_cast<std::uint32_t>(out.bindings.size()), push_bytes, constants, kinds);
