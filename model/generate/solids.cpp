@@ -148,6 +148,22 @@ Mesh cylinder(double radius, double height, std::uint32_t segments, std::uint32_
   return revolve(profile, segments, Ends::kPoints);
 }
 
+Mesh cone(double radius, double height, std::uint32_t segments) {
+  Mesh out;
+  out.vertices = {Vec3(0), Vec3(0, 0, height)};
+  for (std::uint32_t i = 0; i < segments; ++i) {
+    const double angle = 2 * std::numbers::pi * i / segments;
+    out.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
+  }
+  for (std::uint32_t i = 0; i < segments; ++i) {
+    const std::uint32_t here = 2 + i, next = 2 + (i + 1) % segments;
+    out.triangles.push_back({0, next, here});
+    out.triangles.push_back({1, here, next});
+  }
+  out.parts = {{"cone", 0, 2 * segments}};
+  return out;
+}
+
 Mesh ring(double inner_radius, double outer_radius, double height, std::uint32_t segments, std::uint32_t rows,
           std::uint32_t steps) {
   rows = std::max(1u, rows);

@@ -45,6 +45,9 @@ Mesh revolve(const std::vector<std::pair<double, double>>& profile, std::uint32_
 Mesh cylinder(double radius, double height, std::uint32_t segments = 48, std::uint32_t rows = 1,
               std::uint32_t cap_rings = 1);
 
+/// Cone about z, its tip at the origin, its base at `height`: 2·segments.
+Mesh cone(double radius, double height, std::uint32_t segments = 48);
+
 /// Ring of rectangular section about z, from z = 0 to `height`: 8·segments triangles at one row and one step.
 Mesh ring(double inner_radius, double outer_radius, double height, std::uint32_t segments = 48,
           std::uint32_t rows = 1, std::uint32_t steps = 1);

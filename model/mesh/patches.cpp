@@ -413,12 +413,15 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
   return count;
 }
 
-void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
+void weigh_for_field(std::int32_t spacing, std::span<const Tip> tips, LatticeMesh& mesh) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const double square = static_cast<double>(spacing) * spacing;
+  std::vector<std::uint8_t> of_tip(count, 0);
+  for (const Tip& tip : tips)
+    for (const std::uint32_t t : tip.triangles) of_tip[t] = 1;
   const Numbering sides = number_joined(mesh, [&](std::uint32_t a, std::uint32_t b, bool smooth) {
-    return smooth && mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] &&
-           looks_back(mesh, a) == looks_back(mesh, b);
+    return smooth && of_tip[a] == 0 && of_tip[b] == 0 && mesh.patch[a] == mesh.patch[b] &&
+           mesh.sample_axis[a] == mesh.sample_axis[b] && looks_back(mesh, a) == looks_back(mesh, b);
   });
   std::vector<std::uint32_t> begin(std::size_t{sides.count} + 1, 0), order(count);
   for (const std::uint32_t side : sides.of)
@@ -434,6 +437,7 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
   mesh.side_levels.clear();
   for (std::uint32_t s = 0; s < sides.count; ++s) {
     Side side{.triangles = std::span(order).subspan(begin[s], begin[s + 1] - begin[s])};
+    if (of_tip[side.triangles.front()] != 0) continue;
     measure(mesh, spacing, square, side);
     const double factor = is_narrow(square, side) ? 0 : factor_of(0, side);
     if (factor == 0) {
@@ -453,6 +457,7 @@ void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh) {
                      (mesh.sample_weight_q30[t] * 0x1p-30));
     }
   }
+  for (const Tip& tip : tips) sample_tip(spacing, tip, mesh);
   std::stable_sort(mesh.extra_samples.begin(), mesh.extra_samples.end(),
                    [](const ExtraSample& a, const ExtraSample& b) { return a.triangle < b.triangle; });
   level_extras(spacing, mesh);
@@ -468,7 +473,7 @@ void count_grid_samples(std::int32_t spacing, LatticeMesh& tool) {
           static_cast<std::uint32_t>(std::min<double>(count_samples(tool, t, spacing)[0], most));
 }
 
-void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh) {
+void mark_thin_pieces(std::int32_t spacing, std::span<const Tip> tips, LatticeMesh& mesh) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const Numbering pieces = number_joined(mesh, [](std::uint32_t, std::uint32_t, bool) { return true; });
   struct Piece {
@@ -494,6 +499,8 @@ void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh) {
     if (piece.closed && piece.volume > 0 && 4 * piece.volume < 3 * kThin * spacing * piece.area)
       mesh.flags[t] |= kTriangleThin;
   }
+  for (const Tip& tip : tips)
+    for (const std::uint32_t t : tip.triangles) mesh.flags[t] |= kTriangleThin;
 }
 
 }  // namespace palpate

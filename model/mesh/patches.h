@@ -4,6 +4,7 @@
 #include <span>
 
 #include "model/lattice/lattice_mesh.h"
+#include "model/mesh/tips.h"
 
 namespace palpate {
 
@@ -15,17 +16,17 @@ void find_patches(std::span<const std::uint32_t> part_of, LatticeMesh& mesh);
 std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std::uint32_t triangle,
                                                     std::int32_t spacing);
 
-/// Fills `field_weight_q30` and `extra_samples`, so that what the grid misses of small and thin faces is
-/// felt, too, and the levels of large ones (EXACTNESS section 4). Patches must be there. Double precision in
-/// a fixed order: made once at load, read by every back end.
-void weigh_for_field(std::int32_t spacing, LatticeMesh& mesh);
+/// Fills `field_weight_q30` and `extra_samples`, so that what the grid misses of small and thin faces and of
+/// tips is felt, too, and the levels of large ones (EXACTNESS section 4). Patches must be there. Double
+/// precision in a fixed order: made once at load, read by every back end.
+void weigh_for_field(std::int32_t spacing, std::span<const Tip> tips, LatticeMesh& mesh);
 
 /// Fills `grid_samples` of a tool: how many samples of each triangle weigh something, cut so that all
 /// together are below 2^32 (EXACTNESS section 4). Its field weights must be there.
 void count_grid_samples(std::int32_t spacing, LatticeMesh& tool);
 
-/// Sets kTriangleThin on the triangles of pieces, joined over edges, that are closed and whose width 4 V / A
-/// is below 4.5 spacings (EXACTNESS section 4). Neighbours must be there.
-void mark_thin_pieces(std::int32_t spacing, LatticeMesh& mesh);
+/// Sets kTriangleThin on the triangles of tips and on those of pieces, joined over edges, that are closed and
+/// whose width 4 V / A is below 9 spacings (EXACTNESS section 4). Neighbours must be there.
+void mark_thin_pieces(std::int32_t spacing, std::span<const Tip> tips, LatticeMesh& mesh);
 
 }  // namespace palpate

@@ -269,8 +269,9 @@ Result<SceneGeometry> build_on(const Lattice& lattice, const Mesh& mockup, const
                         gyration_radius(out.tool, (out.tool_gc_m - out.tool_centre_m) / out.lattice.step_m);
   for (LatticeMesh* mesh : {&out.mockup, &out.tool}) {
     if (go_on && !go_on()) return Error{ErrorCode::kInternal, "loading was cancelled"};
-    weigh_for_field(out.sample_spacing, *mesh);
-    mark_thin_pieces(out.sample_spacing, *mesh);
+    const std::vector<Tip> tips = find_tips(out.sample_spacing, *mesh);
+    weigh_for_field(out.sample_spacing, tips, *mesh);
+    mark_thin_pieces(out.sample_spacing, tips, *mesh);
   }
   count_grid_samples(out.sample_spacing, out.tool);
   return out;

@@ -73,7 +73,7 @@ number (from 0), pose, contact, pairs, cst bst cmt bmt imt est (triangle ids), a
 point m, force N, torque N·m, flags), force, torque (about the tool's centre of mass), flags, truncated, time_us.
 force and torque are what a hand at rest there feels, through its spring. An area's are for looking at: of the pose itself, from the mock-up's samples alone, so they add up to something else.
 With --names also parts: the paths of the mock-up's and of the tool's parts that touch, as palpate info has them.
-A file of poses is CSV with the header x,y,z,qx,qy,qz,qw. A pose far away is free of contact; only one that is not finite or
+A file of poses is CSV with the header x,y,z,qx,qy,qz,qw, or a scene's path, or a run's trace. A pose far away is free of contact; only one that is not finite or
 not a unit rotation is an error (exit code 3).
 
 --export-geometry writes what was judged, on the integer lattice, for other software to check: lattice.json, static.i32,

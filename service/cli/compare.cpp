@@ -50,6 +50,7 @@ Json json_of(const CompareOptions& options, const RunDifference& difference) {
             {"only_first", difference.only_first},
             {"only_second", difference.only_second},
             {"contact_differs", difference.contact_differs}}},
+          {"stopped", {{"first", difference.first_stopped}, {"second", difference.second_stopped}}},
           {"quantities", quantities},
           {"differences", facts}};
 }
@@ -59,6 +60,7 @@ void print(const RunDifference& difference) {
       "{}: {} ticks in both, {} in the first alone, {} in the second alone; in {} only one is in contact\n",
       difference.same_trace() ? "the same trace" : "the traces differ", difference.common,
       difference.only_first, difference.only_second, difference.contact_differs);
+  if (const std::string stopped = stopped_text(difference); !stopped.empty()) fmt::print("{}\n", stopped);
   for (const TickDifference& q : difference.quantities)
     fmt::print("  {:<18} {}\n", q.name, difference_text(q));
   if (difference.facts.empty()) {

@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kPathFooter =
     R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
-(pose, with its fraction on the way to the next; parts), least clearance (of a clear path at its poses; else 0, at the first contact), worst depth at the poses (null: none touches),
+(pose, with its fraction on the way to the next; parts), least clearance (at the poses of a clear path, 0 where one touches within the tolerance; else 0, at the first contact), worst depth at the poses (null: none touches),
 the parts that touch at a pose or at a first contact between two, by name, and what was examined. A first contact is never late, and early by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
 Exit codes: 0 the path is clear, 5 it is not, others as ever. A path of which nothing was examined is an error, never clear.
 
@@ -63,6 +63,9 @@ Json json_of(const LoadedScene& scene, const PathReport& report, const std::stri
   if (!report.clear()) {  // wherever poses lie, no room is left where the tool touches
     out["least_clearance_m"] = 0.0;
     out["closest_pose"] = first;
+  } else if (report.deepest) {  // a contact that is tolerated
+    out["least_clearance_m"] = 0.0;
+    out["closest_pose"] = *report.deepest;
   } else if (report.closest) {
     out["least_clearance_m"] = report.moments[*report.closest].clearance.steps * step;
     out["closest_pose"] = *report.closest;
@@ -208,7 +211,8 @@ void add_path_command(CLI::App& app, PathOptions& options, const Parts& parts, R
       "tell whether a path is clear: first contact, clearance along it, worst depth, the parts that touch");
   path->add_option("scene", options.common.scene, "scene file (JSON)")->required()->type_name("SCENE");
   path->add_option("path", options.path,
-                   "CSV file of poses, header x,y,z,qx,qy,qz,qw: world from tool; or a scene's own path")
+                   "CSV file of poses, header x,y,z,qx,qy,qz,qw: world from tool; or a scene's own path, or "
+                   "a run's trace")
       ->required()
       ->type_name("PATH.csv");
   path->add_option("--backend", options.common.backend, "the engine that answers, as for query (auto)")

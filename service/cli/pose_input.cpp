@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
@@ -16,6 +17,8 @@ namespace {
 
 constexpr std::array<const char*, 7> kFields = {"x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::string_view kHeader = "x,y,z,qx,qy,qz,qw";
+/// Of a scene's path and a run's trace, which have further columns.
+constexpr std::string_view kTimedHeader = "time_s,x_m,y_m,z_m,qx,qy,qz,qw";
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -44,6 +47,13 @@ Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
       return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
   }
   return pose_of(value);
+}
+
+/// The pose of a line of a path or trace, after its time.
+Result<Pose> to_timed_pose(const std::vector<std::string_view>& fields, std::size_t columns) {
+  if (fields.size() != columns)
+    return bad_value(fmt::format("has {} values instead of the header's {}", fields.size(), columns));
+  return to_pose({fields.begin() + 1, fields.begin() + 1 + kFields.size()});
 }
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators, bool merge) {
@@ -91,9 +101,12 @@ Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) 
   std::string text;
   const bool begun = static_cast<bool>(std::getline(in, text));
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  if (!begun || trim(text) != kHeader)
-    return bad_value(
-        fmt::format("{}, line 1: the header is '{}' instead of '{}'", path, shown(trim(text)), kHeader));
+  const std::string header(trim(text));
+  const bool timed = header == kTimedHeader || header.starts_with(std::string(kTimedHeader) + ",");
+  if (!begun || (header != kHeader && !timed))
+    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}' or '{}' and what follows it",
+                                 path, shown(header), kHeader, kTimedHeader));
+  const auto columns = static_cast<std::size_t>(std::ranges::count(header, ',')) + 1;
 
   std::vector<Pose> poses;
   std::string first_error;
@@ -101,7 +114,8 @@ Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) 
   for (std::size_t line = 2; std::getline(in, text); ++line) {
     const std::string_view row = trim(text);
     if (row.empty()) continue;
-    Result<Pose> pose = to_pose(split(row, ",", false));
+    Result<Pose> pose =
+        timed ? to_timed_pose(split(row, ",", false), columns) : to_pose(split(row, ",", false));
     if (pose)
       poses.push_back(*pose);
     else if (bad_lines++ == 0)

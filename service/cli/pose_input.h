@@ -13,9 +13,10 @@ namespace palpate {
 /// tool. Errors (kBadValue): not seven numbers, not finite, not a unit rotation.
 Result<Pose> parse_pose(const std::string& text);
 
-/// Reads `--poses FILE.csv`: the header `x,y,z,qx,qy,qz,qw` to the letter, then a pose a line; blank lines
-/// are passed over. Error (kBadValue): one sentence with file, line and value of the first bad line, and how
-/// many there are.
+/// Reads `--poses FILE.csv`: the header `x,y,z,qx,qy,qz,qw`, then a pose a line; or that of a scene's path or
+/// a run's trace, `time_s,x_m,y_m,z_m,qx,qy,qz,qw` and further columns, of which the pose alone is used.
+/// Blank lines are passed over. Error (kBadValue): one sentence with file, line and value of the first bad
+/// line, and how many there are.
 Result<std::vector<Pose>> read_poses(const std::string& path);
 
 /// The same from a stream that sentences call `name`.

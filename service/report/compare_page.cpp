@@ -95,8 +95,9 @@ std::string compare_page(const RecordedRun& first, const RecordedRun& second,
                      ". Second: " + markup_text(second.folder) + ".</p></header>";
   body += fmt::format(
       "<p class=\"lead\" style=\"margin-top:14px\">{} ticks in both, {} in the first alone, {} in the second "
-      "alone; in {} only one is in contact.</p>",
-      difference.common, difference.only_first, difference.only_second, difference.contact_differs);
+      "alone; in {} only one is in contact{}.</p>",
+      difference.common, difference.only_first, difference.only_second, difference.contact_differs,
+      stopped_text(difference).empty() ? "" : "; " + stopped_text(difference));
   body +=
       "<h2>Tick by tick</h2><div class=\"scroll\"><table "
       "class=\"differences\"><tr><th>quantity</th><th>largest, "

@@ -181,6 +181,8 @@ Result<RecordedRun> read_run(const std::string& folder) {
   out.summary = text.str();
   const Json summary = Json::parse(out.summary, nullptr, false);
   if (!summary.is_object()) return bad_value(file + ": is no run's summary");
+  if (const auto stopped = summary.find("stopped"); stopped != summary.end() && stopped->is_boolean())
+    out.stopped = stopped->get<bool>();
   auto ticks = read_trace((root / "trace.csv").string());
   if (!ticks) return ticks.error();
   out.ticks = std::move(*ticks);
@@ -192,8 +194,17 @@ bool RunDifference::same_trace() const {
          std::all_of(quantities.begin(), quantities.end(), [](const auto& q) { return !q.first_at_s; });
 }
 
+std::string stopped_text(const RunDifference& difference) {
+  if (difference.first_stopped && difference.second_stopped) return "both runs were stopped before their end";
+  if (difference.first_stopped) return "the first run was stopped before its end";
+  if (difference.second_stopped) return "the second run was stopped before its end";
+  return {};
+}
+
 RunDifference difference_of(const RecordedRun& first, const RecordedRun& second) {
   RunDifference out;
+  out.first_stopped = first.stopped;
+  out.second_stopped = second.stopped;
   out.quantities = {{{"place of the tool", "m", 0, 0, 0, 0, 0, {}},
                      {"turn of the tool", "rad", 0, 0, 0, 0, 0, {}},
                      {"response's force", "N", 0, 0, 0, 0, 0, {}},

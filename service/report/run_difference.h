@@ -24,6 +24,7 @@ struct RecordedTick {
 struct RecordedRun {
   std::string folder;
   std::string summary;              ///< summary.json, an object
+  bool stopped = false;             ///< before its end
   std::vector<RecordedTick> ticks;  ///< ascending
 };
 
@@ -53,9 +54,13 @@ struct RunDifference {
   std::uint64_t contact_differs = 0;                          ///< ticks in which only one is in contact
   std::array<TickDifference, 6>
       quantities;  ///< of the common ticks: place, turn, response's and sent force and torque
-  std::vector<FactDifference> facts;  ///< provenance first
-  bool same_trace() const;            ///< the same ticks with the same numbers
+  std::vector<FactDifference> facts;                   ///< provenance first
+  bool first_stopped = false, second_stopped = false;  ///< before its end
+  bool same_trace() const;                             ///< the same ticks with the same numbers
 };
+
+/// Which of the two runs were stopped before their end, in a sentence; empty: neither.
+std::string stopped_text(const RunDifference& difference);
 
 RunDifference difference_of(const RecordedRun& first, const RecordedRun& second);
 

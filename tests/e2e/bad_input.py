@@ -127,6 +127,10 @@ def test_a_bad_line_of_a_poses_file_is_named_by_its_number():
     refuse(f'y,x,z,qx,qy,qz,qw\n{good}\n', 'line 1', header)
     refuse(f'{header}\n', 'no pose')
     refuse('', 'line 1')
+    timed = 'time_s,x_m,y_m,z_m,qx,qy,qz,qw'
+    refuse(f'{timed},stage\n0,{good},1\n0.1,{good}\n', 'line 3', "8 values instead of the header's 9")
+    refuse(f'{timed}more\n0,{good}\n', 'line 1', timed)
+    refuse(f'{timed},stage\n', 'no pose')
     expect_refused(palpate('query', path, '--poses', folder / 'gone.csv'), 3, 'gone.csv')
 
 

@@ -64,6 +64,20 @@ def test_like_runs_have_the_same_trace_and_others_say_where_they_part():
     )
 
 
+def test_a_run_that_was_stopped_is_said_to_be():
+    folder = Folder()
+    a, b, _ = runs(folder)
+    expect('stopped' not in palpate('compare', a, b).out, 'neither was')
+    for run in (b, a):
+        summary = json.loads((run / 'summary.json').read_text())
+        (run / 'summary.json').write_text(json.dumps(summary | {'stopped': True}))
+        told = json.loads(palpate('compare', a, b, '--json', '--out', folder / 'out').out)
+        expect(told['stopped'] == {'first': run == a, 'second': True}, told['stopped'])
+        sentence = ('both runs were' if run == a else 'the second run was') + ' stopped before'
+        expect(sentence in palpate('compare', a, b).out, sentence)
+        expect(sentence in (folder / 'out' / 'compare.html').read_text(), 'and on the page')
+
+
 def test_what_is_no_run_is_refused_with_file_and_line():
     folder = Folder()
     a = runs(folder)[0]

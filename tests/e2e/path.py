@@ -136,7 +136,10 @@ def test_a_tolerance_lets_shallow_contact_pass():
         scene = ball_over_a_block(folder)
         shallow = poses(folder, 0.02, 0.0098, 0.02)
         expect(palpate('path', scene, shallow).code == 5, 'without tolerance')
-        expect(palpate('path', scene, shallow, '--tolerance', '0.001').code == 0, 'with more than it is deep')
+        tolerated = palpate('path', scene, shallow, '--tolerance', '0.001')
+        expect(tolerated.code == 0, 'with more than it is deep')
+        report = json.loads(tolerated.out)
+        expect(report['least_clearance_m'] == 0 and report['closest_pose'] == 1, report)
         for backend in ('cpu', 'ref'):
             lines = lines_of(
                 palpate(

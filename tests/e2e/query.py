@@ -202,6 +202,22 @@ def test_bodies_of_one_mesh_are_told_apart():
     expect(names == [['block'], ['block#2'], ['block#3']], names)
 
 
+def test_a_path_and_a_trace_are_poses():
+    folder = Folder()
+    scene = folder.save()
+    rows = [f'{x},0,0.0{z},0,0,0,1' for x, z in ((0, 3), (0.001, 19), (0.002, 18))]
+    asked = {}
+    for name, header, line in (
+        ('poses', HEADER.strip(), '{}'),
+        ('path', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage', '0.5,{},2'),
+        ('trace', 'time_s,x_m,y_m,z_m,qx,qy,qz,qw,force_x_N,contact,stage', '7,{},0.1,0,1'),
+    ):
+        text = '\n'.join([header, *(line.format(row) for row in rows)]) + '\n'
+        lines = lines_of(palpate('query', scene, '--poses', folder.write(f'{name}.csv', text)))
+        asked[name] = [(one['pose'], one['force'], one['pairs']) for one in lines]
+    expect(len(asked['poses']) == 3 and asked['path'] == asked['trace'] == asked['poses'], asked)
+
+
 def generated(folder):
     outcome = palpate(
         'generate',

@@ -150,7 +150,7 @@ TEST(WorkGiven, IsForceTimesWayAndTorqueTimesTurnAboutTheCentreOfMass) {
 }
 
 RecordedRun run_of(int ticks, double force, const char* summary) {
-  RecordedRun run{"run", summary, {}};
+  RecordedRun run{.folder = "run", .summary = summary, .ticks = {}};
   for (int i = 0; i < ticks; ++i) {
     RecordedTick tick;
     tick.tick = i;

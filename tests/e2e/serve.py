@@ -459,6 +459,8 @@ def test_a_session_runs_is_watched_paused_recorded_and_stopped():
         expect(len(trace.body) == run['files']['trace.csv'] and trace.body.startswith(b'time_s,'), trace)
         (*_, last_row) = trace.body.splitlines()
         expect(float(last_row.split(b',')[0]) == stopped['time_s'], (last_row, stopped))
+        in_lines = server.ask('GET', '/v1/runs/first/trace.csv', headers={'Range': 'lines=1-2'})
+        expect(in_lines.status == 200 and in_lines.body.startswith(b'time_s,x_m'), in_lines.status)
         part = server.ask('GET', '/v1/runs/first/trace.csv', headers={'Range': 'bytes=5-9'})
         expect(part.status == 206 and part.body == trace.body[5:10], part)
         expect(server.ask('DELETE', f'/v1/scenes/{name}').status == 204, 'a scene out of use can go')

@@ -23,6 +23,10 @@ Mesh bore(double radius, double depth, std::uint32_t sides) {
   return lifted(solids::ring(radius * kMm, 2 * radius * kMm, depth * kMm, sides), {0, 0, -depth / 2});
 }
 
+Mesh cone(double radius, double height, std::uint32_t sides) {
+  return solids::cone(radius * kMm, height * kMm, sides);
+}
+
 Mesh joined(const std::vector<Mesh>& parts) {
   Mesh out;
   for (const Mesh& part : parts) solids::append(out, part, "part");
@@ -222,6 +226,18 @@ std::vector<Case> fit_cases() {
             return lifted(peg(0.3, 12, 8), {0, 0, 6});
           },
           {.along = 0.3, .turn = 0.1}),
+      fit(
+          "cone_on_a_plate", "a tip, whose own samples alone say how it is pushed",
+          [] {
+            return block({-12, -12, -4}, {12, 12, 0});
+          },
+          [] { return cone(4, 10, 24); }, {.place = {0, 0, -1}, .along = 0.6, .turn = 0.3}),
+      fit(
+          "tip_to_tip", "two tips, of which each says half", [] { return cone(4, 10, 24); },
+          [] {
+            return solids::moved(cone(2, 8, 5), {Vec3(0), Quat(0, 1, 0, 0)});  // upside down
+          },
+          {.place = {0, 0, 1.5}, .along = 0.5, .turn = 0.2}),
       fit(
           "nearly_closed_shell", "an inside by vote",
           [] {

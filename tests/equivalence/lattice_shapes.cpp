@@ -49,8 +49,8 @@ Result<SceneGeometry> lattice_scene(const Triangles& mockup, const Triangles& to
   scene.tool_grid = make_grid(scene.tool.box_min, scene.tool.box_max, voxel);
   scene.sample_spacing = spacing;
   scene.contact_samples = 12;  // few, so that many contacts are sampled coarsely
-  weigh_for_field(scene.sample_spacing, scene.mockup);
-  weigh_for_field(scene.sample_spacing, scene.tool);
+  weigh_for_field(scene.sample_spacing, find_tips(scene.sample_spacing, scene.mockup), scene.mockup);
+  weigh_for_field(scene.sample_spacing, find_tips(scene.sample_spacing, scene.tool), scene.tool);
   count_grid_samples(scene.sample_spacing, scene.tool);
   scene.reference_area_m2 = 1;
   scene.tool_gyration_m = 1;

@@ -34,6 +34,7 @@ constexpr std::array kQuick{"peg of 24 sides tilted, play 0.3 mm",
                             "plate on to 2 pads",
                             "thin tool on a thick block",
                             "pin on a plate",
+                            "cone's tip on a block",
                             "sheet from below",
                             "open box from outside"};
 
@@ -48,14 +49,6 @@ std::vector<ForceCaseMaker> asked_cases() {
   return cases;
 }
 
-/// What falls short, and why (docs/ACCURACY.md): a cone's tip holds a few samples, which lie to one side of
-/// its axis. `palpate bench force` reports all of it.
-bool falls_short(const std::string& name, const std::string& sentence) {
-  if (sentence.starts_with("∂F is")) return name.starts_with("cone's tip");
-  if (sentence.ends_with("of the work is lost round the loop")) return name == "cone's tip over an edge";
-  return name == "cone's tip on a block" && sentence.find("from the way it must push") != std::string::npos;
-}
-
 class Forces : public testing::TestWithParam<ForceCaseMaker> {};
 
 TEST_P(Forces, AreAsThePartsSay) {
@@ -66,8 +59,7 @@ TEST_P(Forces, AreAsThePartsSay) {
     ASSERT_TRUE(figures) << figures.error().sentence;
     EXPECT_GT(figures->touching, 0u);
     for (const std::string& sentence : figures->broken)
-      if (!falls_short(subject.name, sentence))
-        ADD_FAILURE() << subject.name << ", voxels × " << voxels << ": " << sentence;
+      ADD_FAILURE() << subject.name << ", voxels × " << voxels << ": " << sentence;
   }
 }
 

@@ -30,7 +30,7 @@ LatticeMesh build(const Mesh& mesh, const Vec3& origin_m = Vec3(0), std::int32_t
   MeshReport report;
   auto built = build_lattice_mesh(mesh, Lattice{kStep, origin_m}, {}, report);
   EXPECT_TRUE(built) << built.error().sentence;
-  weigh_for_field(spacing, *built);
+  weigh_for_field(spacing, find_tips(spacing, *built), *built);
   return std::move(*built);
 }
 
@@ -444,7 +444,8 @@ TEST(ExtraSamples, StandForFlatSidesNarrowerThanTwoSpacings) {
   // Its long sides are 1 mm wide: area over the diagonal is that, but for a part in a thousand.
   const auto of_sides = [](double spacing) {
     LatticeMesh mesh = build(solids::box(Vec3(0), Vec3(0.001, 0.02, 0.03), Int3(1)));
-    weigh_for_field(static_cast<std::int32_t>(spacing / kStep), mesh);
+    weigh_for_field(static_cast<std::int32_t>(spacing / kStep),
+                    find_tips(static_cast<std::int32_t>(spacing / kStep), mesh), mesh);
     return std::ranges::count_if(mesh.extra_samples, [&](const ExtraSample& extra) {
       return std::abs(normal_of(mesh, extra.triangle).x) < 0.5;
     });
@@ -465,7 +466,7 @@ TEST(ThinPieces, AreNarrowerThanNineSpacings) {
   const double width = 1440.0 / 612 * 1e-3;
   const auto marked = [&](double of_width) {
     LatticeMesh mesh = build(solids::box(Vec3(0), Vec3(0.002, 0.003, 0.06), Int3(3)));
-    mark_thin_pieces(static_cast<std::int32_t>(of_width * width / (9 * kStep)), mesh);
+    mark_thin_pieces(static_cast<std::int32_t>(of_width * width / (9 * kStep)), {}, mesh);
     return thin_part(mesh);
   };
   EXPECT_EQ(marked(0.99), 0);  // corners are rounded to a micrometre
@@ -479,7 +480,7 @@ TEST(ThinPieces, AreClosedAndTellByThemselves) {
   open.triangles.pop_back();
   open.parts = {{"open", 0, static_cast<std::uint32_t>(open.triangles.size())}};
   LatticeMesh mesh = build(open);
-  mark_thin_pieces(kSpacing, mesh);
+  mark_thin_pieces(kSpacing, {}, mesh);
   EXPECT_EQ(thin_part(mesh), 0);
   Mesh both = pin;
   both.vertices.insert(both.vertices.end(), block.vertices.begin(), block.vertices.end());
@@ -489,9 +490,9 @@ TEST(ThinPieces, AreClosedAndTellByThemselves) {
   }
   both.parts = {{"both", 0, static_cast<std::uint32_t>(both.triangles.size())}};
   mesh = build(both);
-  mark_thin_pieces(kSpacing, mesh);
+  mark_thin_pieces(kSpacing, {}, mesh);
   EXPECT_EQ(thin_part(mesh), 0.5);
-  mark_thin_pieces(1, mesh);
+  mark_thin_pieces(1, {}, mesh);
   EXPECT_EQ(thin_part(mesh), 0);
 }
 
@@ -505,7 +506,7 @@ TEST(ThinPieces, AreNoHollows) {
     hollow.triangles.push_back({a + before, c + before, b + before});
   hollow.parts = {{"hollow", 0, static_cast<std::uint32_t>(hollow.triangles.size())}};
   LatticeMesh mesh = build(hollow);
-  mark_thin_pieces(kSpacing, mesh);
+  mark_thin_pieces(kSpacing, {}, mesh);
   EXPECT_EQ(thin_part(mesh), 0);
 }
 

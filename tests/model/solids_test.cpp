@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "model/generate/turn.h"
 
@@ -44,6 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
                               4 * (6 + 15 + 10), 0.006, 1e-12},
                     SolidCase{"sphere", [] { return solids::sphere(0.02, 48, 24); }, 2 * 48 * 23,
                               4.0 / 3 * kPi * 8e-6, 0.02},
+                    SolidCase{"cone", [] { return solids::cone(0.5, 2, 64); }, 2 * 64,
+                              0.25 * 2 / 3 * 32 * std::sin(std::numbers::pi / 32), 1e-12},
                     SolidCase{"cylinder", [] { return solids::cylinder(0.5, 2, 64, 3, 2); }, 2 * 64 * 6,
                               kPi * 0.25 * 2, 0.002},
                     SolidCase{"ring", [] { return solids::ring(0.5, 1, 0.1, 64); }, 8 * 64, kPi * 0.75 * 0.1,

@@ -47,7 +47,7 @@ shaders/frame/ shaders/""".split()
 # The host's exact code, in the order of CMakeLists.txt.
 HOST = [
     f"model/{name}.cpp"
-    for name in "mesh/boundary mesh/edges mesh/orientation contact/field_response contact/response mesh/patches mesh/side_winding mesh/smooth_angle".split()
+    for name in "mesh/boundary mesh/edges mesh/orientation contact/field_response contact/response mesh/patches mesh/tips mesh/side_winding mesh/smooth_angle".split()
 ]
 
 
@@ -161,6 +161,7 @@ TESTS = {
     "cpu_ref/depth.cpp": ["depth_search"],
     "cpu_ref/distance_of_triangles.cpp": ["first_contact"],
     "model/mesh/patches.cpp": ["patches"],
+    "model/mesh/tips.cpp": ["tips"],
     "compute/native/broad_phase/": ["filters"],
     "compute/native/force/": ["depth_search"],
     "compute/native/narrow_phase/": ["filters", "inside_cells"],

@@ -112,8 +112,9 @@ std::vector<Answer> ask(const Question& question, const std::vector<LatticePose>
   geometry.tool_grid = make_grid(geometry.tool.box_min, geometry.tool.box_max, question.voxel);
   geometry.sample_spacing = question.spacing;
   geometry.contact_samples = 12;  // few, so that many contacts are sampled coarsely
-  weigh_for_field(geometry.sample_spacing, geometry.mockup);
-  weigh_for_field(geometry.sample_spacing, geometry.tool);
+  weigh_for_field(geometry.sample_spacing, find_tips(geometry.sample_spacing, geometry.mockup),
+                  geometry.mockup);
+  weigh_for_field(geometry.sample_spacing, find_tips(geometry.sample_spacing, geometry.tool), geometry.tool);
   count_grid_samples(geometry.sample_spacing, geometry.tool);
   geometry.reference_area_m2 = 1;
   geometry.tool_gyration_m = 1;

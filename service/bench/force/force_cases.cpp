@@ -350,26 +350,10 @@ ForceCase pressed_down(Mesh mockup, Mesh tool, double from, double by, double vo
       {.at = 150, .direction = Vec3(0, 0, 1), .direction_deg = 3, .most_force = {}, .couple_against = {}});
   return out;
 }
-/// Its tip at 0, upright.
-Mesh cone(double radius, double height, std::uint32_t sides) {
-  Mesh out;
-  out.vertices = {Vec3(0), Vec3(0, 0, height)};
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const double angle = 2 * kPi * i / sides;
-    out.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
-  }
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const std::uint32_t here = 2 + i, next = 2 + (i + 1) % sides;
-    out.triangles.push_back({0, next, here});
-    out.triangles.push_back({1, here, next});
-  }
-  out.parts = {{"cone", 0, 2 * sides}};
-  return out;
-}
 ForceCase cone_over_an_edge() {
   return {.name = {},
           .mockup = block(Vec3(-60, -60, -60), Vec3(0, 60, 0)),
-          .tool = cone(15 * kMm, 30 * kMm, 96),
+          .tool = solids::cone(15 * kMm, 30 * kMm, 96),
           .path = along(240,
                         [](double t) {
                           return at(Vec3(2 * std::cos(2 * kPi * t), 0.3, std::sin(2 * kPi * t) - 0.5) * kMm);
@@ -469,8 +453,8 @@ std::vector<ForceCaseMaker> force_cases() {
                         block(Vec3(-20, -20, 0), Vec3(20, 20, 6)), 0.1, 1.5, 3 * kMm);
   });
   add("cone's tip on a block", [] {
-    return pressed_down(block(Vec3(-40, -40, -30), Vec3(40, 40, 0)), cone(15 * kMm, 30 * kMm, 96), 0.1, 2.1,
-                        0, Vec3(3.1, 2.2, 0));
+    return pressed_down(block(Vec3(-40, -40, -30), Vec3(40, 40, 0)), solids::cone(15 * kMm, 30 * kMm, 96),
+                        0.1, 2.1, 0, Vec3(3.1, 2.2, 0));
   });
   add("cone's tip over an edge", cone_over_an_edge);
   add("needle", [] {

@@ -132,7 +132,7 @@ HttpResponse file_of(const fs::path& root, const HttpRequest& request) {
   response.headers.emplace_back("Content-Security-Policy",
                                 "sandbox allow-scripts; default-src 'unsafe-inline' data:");
   std::uint64_t first = 0, length = size;
-  if (!request.range.empty()) {
+  if (request.range.starts_with("bytes=")) {  // a range in other units is none, as RFC 9110 has it
     const auto range = byte_range(request.range, size);
     if (!range) {
       HttpResponse refused(Problem{
