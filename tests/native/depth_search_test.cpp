@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -120,14 +121,14 @@ TEST(TriangleTree, LeavesSheetsOutAndCanBeCancelled) {
   EXPECT_TRUE(TriangleTree::make(mesh, [] { return false; }).order.empty());
   for (auto& flags : mesh.flags) flags |= kTriangleSheet;
   const TriangleTree none = TriangleTree::make(mesh, [] { return true; });
-  EXPECT_EQ(DepthSearch(mesh, none).below(Int3(0), DepthSearch::kNobody).triangle, DepthSearch::kNobody);
+  EXPECT_EQ(DepthSearch(mesh, none, 1).below(Int3(0), DepthSearch::kNobody).triangle, DepthSearch::kNobody);
 }
 
 TEST(DepthSearch, SaysWhatAskingEveryTriangleSays) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const TriangleTree tree = TriangleTree::make(c.mesh, [] { return true; });
-    DepthSearch search(c.mesh, tree);
+    DepthSearch search(c.mesh, tree, 1 << 10);
     std::mt19937 random(11);
     const auto any = [&](std::uint32_t below) {
       return std::uniform_int_distribution<std::uint32_t>(0, below - 1)(random);
@@ -157,6 +158,71 @@ TEST(DepthSearch, SaysWhatAskingEveryTriangleSays) {
       last = found.place;
     }
   }
+}
+
+// Cubes of space are known from their second point on, and larger ones have more of the tree than there is
+// room for: points that lie as close as samples of a contact, about every corner of a mesh.
+TEST(DepthSearch, SaysTheSameInACubeThatItKnows) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const TriangleTree tree = TriangleTree::make(c.mesh, [] { return true; });
+    for (const std::int32_t spacing : {1, 1 << 6, 1 << 12, 1 << 20}) {
+      SCOPED_TRACE(spacing);
+      DepthSearch search(c.mesh, tree, spacing);
+      std::mt19937 random(13);
+      const auto within = [&](std::int32_t most) {
+        return std::uniform_int_distribution<std::int32_t>(-most, most)(random);
+      };
+      std::uint32_t last = DepthSearch::kNobody;
+      for (int place = 0; place < 30; ++place) {
+        const auto id = tree.order[static_cast<std::size_t>(within(1 << 20) & 0xFFFFF) % tree.order.size()];
+        const Int3 near = c.mesh.corner(id, place % 3) + spacing * Int3(within(9), within(9), within(9));
+        for (int i = 0; i < 8; ++i) {
+          const Int3 point = near + Int3(within(2 * spacing), within(2 * spacing), within(2 * spacing));
+          const DepthSearch::Depth found = search.below(point, last), wanted = of_all(c.mesh, point);
+          ASSERT_EQ(found.steps, wanted.steps) << point.x << " " << point.y << " " << point.z;
+          ASSERT_EQ(found.triangle, wanted.triangle) << point.x << " " << point.y << " " << point.z;
+          last = found.place;
+        }
+      }
+    }
+  }
+}
+
+// The worst there is: at one corner of a cube the surface is near, and what is nearest to the opposite corner
+// lies further outside than the cube's diagonal, all but a hundredth.
+TEST(DepthSearch, KnowsOfACubeWhatIsNearestToItsDeepestPoint) {
+  constexpr std::int32_t kSpacing = 1 << 10, kEdge = 8 * kSpacing;
+  const auto most = static_cast<std::int32_t>(0.99 * std::sqrt(3.0) * kEdge);
+  std::vector<cpu_ref::Triangle> triangles;
+  for (std::int32_t i = 0; i < 400; ++i) {  // half of them here, half there
+    const Int3 a = (i % 2 == 0 ? Int3(-60) : Int3(kEdge + most, kEdge, kEdge)) + Int3(i % 20, i / 20, 0);
+    triangles.emplace_back(a, a + Int3(9, 0, 1), a + Int3(0, 9, 2));
+  }
+  LatticeMesh mesh = cpu_ref::lattice_mesh_of(triangles);
+  for (auto& flags : mesh.flags) flags &= static_cast<std::uint8_t>(~kTriangleSheet);
+  const TriangleTree tree = TriangleTree::make(mesh, [] { return true; });
+  DepthSearch search(mesh, tree, kSpacing);
+  for (int times = 0; times < 3; ++times)
+    EXPECT_EQ(search.below(Int3(1), DepthSearch::kNobody).triangle, of_all(mesh, Int3(1)).triangle);
+  const Int3 deepest(kEdge - 1);
+  const DepthSearch::Depth wanted = of_all(mesh, deepest);
+  ASSERT_GT(mesh.corner(wanted.triangle, 0).x, kEdge);
+  EXPECT_EQ(search.below(deepest, DepthSearch::kNobody).triangle, wanted.triangle);
+}
+
+TEST(DepthSearch, LooksAtLessInACubeThatItKnows) {
+  const LatticeMesh mesh = cpu_ref::lattice_mesh_of(cpu_ref::lattice_sphere(1 << 20, 200, 100));
+  const TriangleTree tree = TriangleTree::make(mesh, [] { return true; });
+  DepthSearch search(mesh, tree, 1 << 12);
+  const auto looks = [&](int of) {
+    const std::uint64_t before = search.looks();
+    search.below(Int3((1 << 20) - 9000 + of, 1000, 2000), DepthSearch::kNobody);
+    return search.looks() - before;
+  };
+  const std::uint64_t first = looks(0), second = looks(1), third = looks(2);
+  EXPECT_GT(second, first) << "it finds out what is near";
+  EXPECT_LT(third, first);
 }
 
 TEST(Reference, FindsTheNearestThatBoundsASolid) {

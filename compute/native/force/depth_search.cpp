@@ -42,6 +42,8 @@ constexpr float kFloatSlack = 0x1p-19F;
 /// A sum of squares is off by less than this part of it.
 constexpr float kSquareSlack = 0x1p-20F;
 
+constexpr float kDiagonal = 1.7320509F;  // of a cube, over its edge, and a little
+
 /// Eight triangles as floats, in steps from their first corners. By edge: two vectors of unit length, along
 /// it and in the plane away from the triangle, and where the second and the third begin.
 struct TriangleRun {
@@ -79,6 +81,21 @@ struct Search {
   float most() const { return best == INT64_MAX ? 0x1p50F : static_cast<float>(best + kRounding); }
 };
 
+/// Of the tree: a run at level 0; at level n what has eight boxes of level n - 1.
+struct Node {
+  std::uint32_t level, number;
+};
+
+/// A cube of space, and what of the tree a search in it begins with: nodes that have the nearest triangle of
+/// every point in it.
+struct Cube {
+  static constexpr std::uint32_t kMost = 16;             // nodes: no more are looked at one by one (chosen)
+  Int3 place{std::numeric_limits<std::int32_t>::min()};  ///< its lowest corner over its edge
+  std::uint32_t count = 0;                               ///< of nodes; 0: not found yet
+  std::array<Node, kMost> nodes;
+  std::array<TriangleTree::Boxes, kMost / kEight> boxes;  ///< theirs
+};
+
 constexpr std::size_t kLevels = TriangleTree::kTurnedLevels + 1;  // of nodes: with turned boxes, and above
 
 /// By level of a node, as descend() counts them, the distance from which on turned boxes tell more than they
@@ -108,19 +125,35 @@ std::array<float, kLevels + 1> turned_boxes_pay_from(const TriangleTree& tree) {
 struct DepthSearch::Tables {
   static constexpr std::uint32_t kRuns = 512;    // runs of triangles (chosen: 600 KiB)
   static constexpr std::uint32_t kKnown = 1024;  // triangles (chosen: 200 KiB)
+  static constexpr std::uint32_t kCubes = 512;   // cubes (chosen: 260 KiB)
   const LatticeMesh& mesh;
   const TriangleTree& tree;
   std::array<float, kLevels + 1> turned_from = turned_boxes_pay_from(tree);
   std::vector<Run> runs = std::vector<Run>(kRuns);  ///< by run, where a newer one takes an older one's place
   std::vector<Known> known = std::vector<Known>(kKnown);  ///< by triangle, likewise
+  int cube_shift;                                         ///< 2^it: a cube's edge
+  std::vector<Cube> cubes = std::vector<Cube>(kCubes);    ///< by place, likewise
   std::uint64_t looks = 0;
 
+  Tables(const LatticeMesh& of_mesh, const TriangleTree& of_tree, std::int32_t spacing)
+      : mesh(of_mesh),
+        tree(of_tree),
+        cube_shift(std::min(
+            static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::max(spacing, 1)))) + 2, 30)) {}
   const Run& run(std::uint32_t number);
   Known& know(std::uint32_t triangle);
   std::int64_t height_above(const Int3& point, std::uint32_t triangle) const;
   std::int64_t distance_to(const Int3& point, std::uint32_t triangle);
   void look_at(Search& search, std::uint32_t place, bool above);
+  Cube& cube_at(const Int3& place);
 };
+
+Cube& DepthSearch::Tables::cube_at(const Int3& place) {
+  const std::uint32_t mixed = static_cast<std::uint32_t>(place.x) * 73856093U ^
+                              static_cast<std::uint32_t>(place.y) * 19349663U ^
+                              static_cast<std::uint32_t>(place.z) * 83492791U;
+  return cubes[mixed % kCubes];
+}
 
 const Run& DepthSearch::Tables::run(std::uint32_t number) {
   Run& run = runs[number % kRuns];
@@ -242,8 +275,8 @@ PALPATE_SECOND_CODE_END
 
 }  // namespace
 
-DepthSearch::DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree)
-    : tables_(new Tables{mesh, tree}) {}
+DepthSearch::DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree, std::int32_t spacing)
+    : tables_(new Tables(mesh, tree, spacing)) {}
 DepthSearch::DepthSearch() = default;
 DepthSearch::DepthSearch(DepthSearch&&) noexcept = default;
 DepthSearch& DepthSearch::operator=(DepthSearch&&) noexcept = default;

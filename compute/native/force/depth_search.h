@@ -9,8 +9,8 @@ namespace palpate {
 
 /// How far a point lies below a body's surface (docs/EXACTNESS.md section 4), on the host: down the body's
 /// tree, eight boxes or triangles at a time in single precision, which only sorts out; what is left, integers
-/// decide. What it has worked out of triangles it keeps, as far as there is room. Arguments outlive this. One
-/// thread; only making one allocates.
+/// decide. What it has worked out of triangles, and where in the tree points of a cube have what is near, it
+/// keeps, as far as there is room. Arguments outlive this. One thread; only making one allocates.
 class DepthSearch {
  public:
   struct Depth {
@@ -24,8 +24,9 @@ class DepthSearch {
   DepthSearch(DepthSearch&&) noexcept;
   DepthSearch& operator=(DepthSearch&&) noexcept;
   ~DepthSearch();
-  /// `tree` is the mesh's.
-  DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree);
+  /// `tree` is the mesh's. `spacing`, steps: points that are asked one after the other are often so close. It
+  /// changes nothing but the time.
+  DepthSearch(const LatticeMesh& mesh, const TriangleTree& tree, std::int32_t spacing);
 
   /// The point is within ±2^30. `guess`: the place of a triangle that may be near, as for a point beside it;
   /// kNobody: none. It changes nothing but the time.

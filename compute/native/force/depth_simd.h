@@ -52,14 +52,15 @@ static unsigned least_of(const float* lanes) {
 
 constexpr float kFurther = std::numeric_limits<float>::infinity();  // of a lane that is not near
 
-// Squared distances from a point to eight boxes, kFurther beyond the limit. Bits: those that are within it.
-static unsigned to_boxes(const TriangleTree::Boxes& boxes, const Int3& point, float limit, float* squared) {
+// Squared distances from a box to eight others, kFurther beyond the limit. Bits: those that are within it.
+static unsigned to_boxes(const TriangleTree::Boxes& boxes, const Int3& lowest, const Int3& highest,
+                         float limit, float* squared) {
   Words near[kEight / kWidth];
   for (std::size_t begin = 0; begin < kEight; begin += kWidth) {
     Floats sum{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Words at = Words{} + point[static_cast<int>(k)], before = load(boxes.low[k].data() + begin) - at,
-                  behind = at - load(boxes.high[k].data() + begin);
+      const Words before = load(boxes.low[k].data() + begin) - highest[static_cast<int>(k)],
+                  behind = lowest[static_cast<int>(k)] - load(boxes.high[k].data() + begin);
       Words gap = before > behind ? before : behind;
       gap = gap > 0 ? gap : Words{};
       const Floats away = __builtin_convertvector(gap, Floats);
@@ -153,11 +154,14 @@ static unsigned within(const float* squared, const float* slack, float most) {
   return bits_of(near);
 }
 
+// Bits: the first `count` of eight.
+static unsigned first_of(std::size_t count) { return 0xFFU >> (kEight - std::min(kEight, count)); }
+
 // What of a run may be as near as the best so far, the nearest first: after it few others still may.
 static void look_into(DepthSearch::Tables& tables, Search& search, std::uint32_t number) {
   ++tables.looks;
   const std::size_t first = kEight * number;
-  const unsigned there = 0xFFU >> (kEight - std::min(kEight, tables.tree.order.size() - first));
+  const unsigned there = first_of(tables.tree.order.size() - first);
   alignas(32) float squared[kEight], slack[kEight];
   const NearTriangles found = to_triangles(tables.run(number), search.point, search.most(), squared, slack);
   unsigned near = there & found.near;
@@ -172,37 +176,101 @@ static void look_into(DepthSearch::Tables& tables, Search& search, std::uint32_t
   }
 }
 
-// From the root to runs, the nearest of each node first.
+// Finds what a search in a cube begins with: what is as near to it as its points are deep at most. One of
+// them is `depth` deep, and no other by more than the cube's diagonal deeper.
+static void find_nodes(DepthSearch::Tables& tables, Cube& cube, std::int64_t depth) {
+  const TriangleTree& tree = tables.tree;
+  const std::int32_t edge = std::int32_t{1} << tables.cube_shift;
+  const Int3 lowest = cube.place * edge, highest = lowest + (edge - 1);
+  const float most = static_cast<float>(depth + kRounding) + kDiagonal * static_cast<float>(edge),
+              limit = most * most * (1 + kSquareSlack);
+  alignas(32) float squared[kEight];
+  cube.nodes[0] = {static_cast<std::uint32_t>(tree.level_begin.size()), 0};
+  cube.count = 1;
+  // From the root, whose children there is always room for. The largest first; what has too many children
+  // stays.
+  for (std::uint32_t level = cube.nodes[0].level; level > 0; --level)
+    for (std::uint32_t n = 0; n < cube.count;) {
+      const Node node = cube.nodes[n];
+      unsigned near = 0;
+      if (node.level == level) {
+        ++tables.looks;
+        const std::uint32_t first = static_cast<std::uint32_t>(kEight) * node.number;
+        near =
+            to_boxes(tree.boxes[tree.level_begin[level - 1] + node.number], lowest, highest, limit, squared) &
+            first_of(tree.nodes(level - 1) - first);
+      }
+      if (node.level != level ||
+          cube.count - 1 + static_cast<std::uint32_t>(std::popcount(near)) > Cube::kMost) {
+        ++n;
+        continue;
+      }
+      cube.nodes[n] = cube.nodes[--cube.count];
+      for (; near != 0; near &= near - 1)
+        cube.nodes[cube.count++] = {level - 1, static_cast<std::uint32_t>(kEight) * node.number +
+                                                   static_cast<std::uint32_t>(std::countr_zero(near))};
+    }
+  for (std::size_t n = 0; n < cube.count; ++n) {
+    const Node node = cube.nodes[n];
+    const TriangleTree::Boxes& from = tree.boxes[tree.level_begin[node.level] + node.number / kEight];
+    TriangleTree::Boxes& to = cube.boxes[n / kEight];
+    for (std::size_t k = 0; k < 3; ++k) {
+      to.low[k][n % kEight] = from.low[k][node.number % kEight];
+      to.high[k][n % kEight] = from.high[k][node.number % kEight];
+    }
+  }
+}
+
+// A node that is still to be looked into.
+struct Open : Node {
+  float squared;
+};
+
+// From what is known of the point's cube, or from the root, to runs, the nearest of each node first.
 static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t guess) {
-  struct Node {
-    std::uint32_t level, number;  // level 0: a run; level n: a node of level n - 1's boxes
-    float squared;
-  };
-  std::array<Node, kEight * 12>
+  std::array<Open, Cube::kMost + kEight * 12>
       open;  // a level leaves at most seven nodes waiting, and 8^12 triangles are more than a mesh can have
   std::size_t count = 0;
   const std::uint32_t seen = guess == kNobody ? kNobody : guess / static_cast<std::uint32_t>(kEight);
   if (seen != kNobody) look_into(tables, search, seen);
   alignas(32) float squared[kEight];
-  Node next{static_cast<std::uint32_t>(tables.tree.level_begin.size()), 0, 0};
+  Open next{{static_cast<std::uint32_t>(tables.tree.level_begin.size()), 0}, 0};
+  const Int3 place = search.point >> tables.cube_shift;
+  Cube& cube = tables.cube_at(place);
+  const bool asked_before = cube.place == place;
+  if (asked_before && cube.count != 0) {
+    const float most = search.most(), limit = most * most * (1 + kSquareSlack);
+    next.squared = kFurther;
+    for (std::size_t first = 0; first < cube.count; first += kEight) {
+      ++tables.looks;
+      for (unsigned near = to_boxes(cube.boxes[first / kEight], search.point, search.point, limit, squared) &
+                           first_of(cube.count - first);
+           near != 0; near &= near - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(near));
+        Open one{cube.nodes[first + i], squared[i]};
+        if (one.squared < next.squared) std::swap(one, next);
+        if (one.squared < kFurther) open[count++] = one;
+      }
+    }
+  }
   // Down to the nearest child of each node without a way through memory; the others wait.
   const auto nearest_child = [&](float most, float limit) {
     ++tables.looks;
     const std::uint32_t level = next.level - 1, first = static_cast<std::uint32_t>(kEight) * next.number;
     const std::size_t group = tables.tree.level_begin[level] + next.number,
                       there = tables.tree.nodes(level) - first;
-    unsigned near = to_boxes(tables.tree.boxes[group], search.point, limit, squared);
+    unsigned near = to_boxes(tables.tree.boxes[group], search.point, search.point, limit, squared);
     if (near != 0 && most > tables.turned_from[std::min<std::size_t>(next.level, kLevels)])
       near = to_turned(tables.tree.turned[group], search.point, limit, squared);
-    if (there < kEight) near &= 0xFFU >> (kEight - there);
+    near &= first_of(there);
     if (near == 0) return false;
     unsigned nearest = least_of(squared);
     if ((near >> nearest & 1) == 0) nearest = static_cast<unsigned>(std::countr_zero(near));  // it is none
     for (unsigned rest = near & ~(1U << nearest); rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      open[count++] = {level, first + i, squared[i]};
+      open[count++] = {{level, first + i}, squared[i]};
     }
-    next = {level, first + nearest, squared[nearest]};
+    next = {{level, first + nearest}, squared[nearest]};
     return true;
   };
   for (;;) {
@@ -214,7 +282,14 @@ static void descend(DepthSearch::Tables& tables, Search& search, std::uint32_t g
         look_into(tables, search, next.number);
       }
     }
-    if (count == 0) return;
+    if (count == 0) break;
     next = open[--count];
+  }
+  // A cube's second point pays for all that follow.
+  if (!asked_before) {
+    cube.place = place;
+    cube.count = 0;
+  } else if (cube.count == 0) {
+    find_nodes(tables, cube, search.best);
   }
 }

@@ -148,8 +148,8 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
   PressureField out;
   out.geometry_ = &geometry;
   for (Lane& lane : out.lanes_) {
-    lane.mockup_depth = DepthSearch(geometry.mockup, mockup);
-    lane.tool_depth = DepthSearch(geometry.tool, tool);
+    lane.mockup_depth = DepthSearch(geometry.mockup, mockup, geometry.sample_spacing);
+    lane.tool_depth = DepthSearch(geometry.tool, tool, geometry.sample_spacing);
     lane.in_mockup = in_mockup;
   }
   out.tool_has_inside_ = tool_has_inside;
