@@ -231,7 +231,7 @@ std::vector<Case> fit_cases() {
           [] {
             return block({-12, -12, -4}, {12, 12, 0});
           },
-          [] { return cone(4, 10, 24); }, {.place = {0, 0, -1}, .along = 0.6, .turn = 0.3}),
+          [] { return cone(4, 10, 40); }, {.place = {0, 0, -1}, .along = 0.6, .turn = 0.3}),
       fit(
           "tip_to_tip", "two tips, of which each says half", [] { return cone(4, 10, 24); },
           [] {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -58,6 +60,40 @@ TEST(Tips, AreNoPitsAndNoOpenOnes) {
   open.triangles.erase(open.triangles.begin());
   open.parts = {{"open", 0, static_cast<std::uint32_t>(open.triangles.size())}};
   EXPECT_EQ(tips_of(open), 0u);
+}
+
+TEST(Tips, AreFoundWhicheverCornersOfTheirTrianglesTheyAre) {
+  Mesh mesh = solids::cone(0.005, 0.01, 48);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    std::ranges::rotate(mesh.triangles[i], mesh.triangles[i].begin() + static_cast<std::ptrdiff_t>(i % 3));
+  EXPECT_EQ(tips_of(mesh), 1u);
+}
+
+TEST(Tips, CloseOnceAndHaveNoCollapsedTriangle) {
+  // Two needles that begin at one corner.
+  Mesh two = solids::cone(0.001, 0.01, 12);
+  const Mesh other = solids::moved(two, {Vec3(0), Quat(0.9, 0.43588989435406736, 0, 0)});
+  const auto before = static_cast<std::uint32_t>(two.vertices.size());
+  two.vertices.insert(two.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({a + before, b + before, c + before});
+  two.parts = {{"two", 0, static_cast<std::uint32_t>(two.triangles.size())}};
+  EXPECT_EQ(tips_of(two), 0u);
+  // A fan whose walk from the first triangle runs into others that close without it.
+  Mesh fan = solids::cone(0.001, 0.01, 12);
+  fan.vertices.emplace_back(0.0011, -0.0003, 0.01);
+  fan.triangles.insert(fan.triangles.begin(), {0, static_cast<std::uint32_t>(fan.vertices.size() - 1), 2});
+  fan.parts = {{"fan", 0, static_cast<std::uint32_t>(fan.triangles.size())}};
+  EXPECT_EQ(tips_of(fan), 0u);
+  // One of its sides is cut in two where it meets the next one, and between them lies what has no area.
+  Mesh cut = solids::cone(0x1p-8, 0x1p-7, 4);  // whole steps
+  ASSERT_EQ(tips_of(cut), 1u);
+  cut.vertices.push_back(0.5 * cut.vertices[2]);
+  ASSERT_EQ(cut.triangles[6], (std::array<std::uint32_t, 3>{0, 2, 5}));
+  cut.triangles[6] = {0, 6, 5};
+  cut.triangles.push_back({6, 2, 5});
+  cut.triangles.push_back({0, 2, 6});
+  cut.parts = {{"cut", 0, static_cast<std::uint32_t>(cut.triangles.size())}};
+  EXPECT_EQ(tips_of(cut), 0u);
 }
 
 TEST(Tips, HaveTheirTrianglesInOrderAndNoneOfAnother) {
