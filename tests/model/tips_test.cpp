@@ -65,7 +65,8 @@ TEST(Tips, AreNoPitsAndNoOpenOnes) {
 TEST(Tips, AreFoundWhicheverCornersOfTheirTrianglesTheyAre) {
   Mesh mesh = solids::cone(0.005, 0.01, 48);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    std::ranges::rotate(mesh.triangles[i], mesh.triangles[i].begin() + static_cast<std::ptrdiff_t>(i % 3));
+    std::rotate(mesh.triangles[i].begin(), mesh.triangles[i].begin() + static_cast<std::ptrdiff_t>(i % 3),
+                mesh.triangles[i].end());
   EXPECT_EQ(tips_of(mesh), 1u);
 }
 
