@@ -103,6 +103,7 @@ TEST(Turns, SeveralBatchesAndALoopAreServedOneAtATime) {
     return std::ranges::all_of(done, [](const std::atomic<int>& turns_had) { return turns_had >= kEnough; });
   };
   std::vector<std::thread> threads;  // each always wants more
+  threads.reserve(done.size());
   for (std::atomic<int>& mine : done)
     threads.emplace_back([&, kind = &mine == &done[0] ? TurnGuard::Kind::kLoop : TurnGuard::Kind::kBatch] {
       while (!all_served() && std::chrono::steady_clock::now() < end) {
