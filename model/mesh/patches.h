@@ -17,8 +17,9 @@ std::array<double, kSampleLevels + 1> count_samples(const LatticeMesh& mesh, std
                                                     std::int32_t spacing);
 
 /// Fills `field_weight_q30` and `extra_samples`, so that what the grid misses of small and thin faces and of
-/// tips is felt, too, and the levels of large ones (EXACTNESS section 4). Patches must be there. Double
-/// precision in a fixed order: made once at load, read by every back end.
+/// tips is felt, too, and the levels of large ones (EXACTNESS section 4). `tips` are find_tips()'s of the
+/// same spacing, steps; patches must be there. Double precision in a fixed order: made once at load, read by
+/// every back end.
 void weigh_for_field(std::int32_t spacing, std::span<const Tip> tips, LatticeMesh& mesh);
 
 /// Fills `grid_samples` of a tool: how many samples of each triangle weigh something, cut so that all

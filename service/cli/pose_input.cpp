@@ -104,8 +104,9 @@ Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) 
   const std::string header(trim(text));
   const bool timed = header == kTimedHeader || header.starts_with(std::string(kTimedHeader) + ",");
   if (!begun || (header != kHeader && !timed))
-    return bad_value(fmt::format("{}, line 1: the header is '{}' instead of '{}' or '{}' and what follows it",
-                                 path, shown(header), kHeader, kTimedHeader));
+    return bad_value(
+        fmt::format("{}, line 1: the header is '{}' instead of '{}', nor does it begin with '{}'", path,
+                    shown(header), kHeader, kTimedHeader));
   const auto columns = static_cast<std::size_t>(std::ranges::count(header, ',')) + 1;
 
   std::vector<Pose> poses;

@@ -444,8 +444,8 @@ TEST(ExtraSamples, StandForFlatSidesNarrowerThanTwoSpacings) {
   // Its long sides are 1 mm wide: area over the diagonal is that, but for a part in a thousand.
   const auto of_sides = [](double spacing) {
     LatticeMesh mesh = build(solids::box(Vec3(0), Vec3(0.001, 0.02, 0.03), Int3(1)));
-    weigh_for_field(static_cast<std::int32_t>(spacing / kStep),
-                    find_tips(static_cast<std::int32_t>(spacing / kStep), mesh), mesh);
+    const auto steps = static_cast<std::int32_t>(spacing / kStep);
+    weigh_for_field(steps, find_tips(steps, mesh), mesh);
     return std::ranges::count_if(mesh.extra_samples, [&](const ExtraSample& extra) {
       return std::abs(normal_of(mesh, extra.triangle).x) < 0.5;
     });
