@@ -18,7 +18,8 @@ inline void pause() {
 }
 
 constexpr std::uint64_t kRound = std::uint64_t{1} << 32;
-std::uint32_t parts_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 16 & 0xFFFF); }
+constexpr std::uint64_t kEnd = std::uint64_t{1} << 16;
+std::uint32_t end_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 16 & 0xFFFF); }
 std::uint32_t next_of(std::uint64_t state) { return static_cast<std::uint32_t>(state & 0xFFFF); }
 
 }  // namespace
@@ -42,20 +43,21 @@ FrameHelper::~FrameHelper() {
   thread_.join();
 }
 
-/// Takes parts until none is left. A part that was taken keeps its round from ending, and with it call_ and
-/// context_ as they are.
+/// Takes parts until none is left, the asker from the first on, the helper from the last. A part that was
+/// taken keeps its round from ending, and with it call_ and context_ as they are.
 void FrameHelper::take_parts(int lane) noexcept {
-  std::uint64_t state = next_.load(std::memory_order_acquire);
-  while (next_of(state) < parts_of(state)) {
-    if (!next_.compare_exchange_weak(state, state + 1, std::memory_order_acq_rel, std::memory_order_acquire))
+  std::uint64_t state = left_.load(std::memory_order_acquire);
+  while (next_of(state) < end_of(state)) {
+    const std::uint64_t after = lane == 0 ? state + 1 : state - kEnd;
+    if (!left_.compare_exchange_weak(state, after, std::memory_order_acq_rel, std::memory_order_acquire))
       continue;
     try {
-      call_(context_, next_of(state), lane);
+      call_(context_, lane == 0 ? next_of(state) : end_of(after), lane);
     } catch (...) {  // no memory
       thrown_[static_cast<std::size_t>(lane)] = std::current_exception();
     }
     done_.fetch_add(1, std::memory_order_release);
-    state = next_.load(std::memory_order_acquire);
+    state = left_.load(std::memory_order_acquire);
   }
 }
 
@@ -63,8 +65,8 @@ void FrameHelper::run(std::uint32_t parts, Call call, void* context) {
   call_ = call;
   context_ = context;
   done_.store(0, std::memory_order_relaxed);
-  const std::uint64_t round = (next_.load(std::memory_order_relaxed) / kRound + 1) * kRound;
-  next_.store(round | std::uint64_t{parts} << 16, std::memory_order_release);
+  const std::uint64_t round = (left_.load(std::memory_order_relaxed) / kRound + 1) * kRound;
+  left_.store(round | parts * kEnd, std::memory_order_release);
   bell_.fetch_add(1, std::memory_order_release);
   bell_.notify_one();
   take_parts(0);

@@ -13,7 +13,7 @@ namespace palpate {
 /// it has begun. What a part leaves may not depend on who did it.
 class FrameHelper {
  public:
-  static constexpr std::uint32_t kMostParts = 0xFFFF;  ///< of a round: 16 bits of next_
+  static constexpr std::uint32_t kMostParts = 0xFFFF;  ///< of a round: 16 bits of left_
   static constexpr int kLanes = 2;                     ///< threads: the asker's, 0, and the helper's, 1
 
   /// Null where there is but one processor for this process, or no thread to be had.
@@ -22,8 +22,9 @@ class FrameHelper {
   FrameHelper(const FrameHelper&) = delete;
   FrameHelper& operator=(const FrameHelper&) = delete;
 
-  /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0) and the helper's (lane 1);
-  /// returns when all have returned. At most kMostParts. What a part throws is thrown on here, once all have
+  /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0), from the first part on, and
+  /// the helper's (lane 1), from the last: so each has what lies together, and much the same from frame to
+  /// frame, which is near in its caches. Returns when all have returned. At most kMostParts. What a part throws is thrown on here, once all have
   /// ended. One caller at a time. Neither allocates nor blocks: for the other's last part it spins, then
   /// yields.
   template <class Part>
@@ -40,8 +41,8 @@ class FrameHelper {
   void take_parts(int lane) noexcept;
   void serve();
 
-  std::atomic<std::uint64_t> next_{
-      0};  ///< round, how many parts it has, the next to be taken: 32, 16 and 16 bits
+  std::atomic<std::uint64_t> left_{
+      0};  ///< round, end and begin of the parts that nobody has taken: 32, 16 and 16 bits
   std::atomic<std::uint32_t> done_{0};  ///< parts of the round
   std::atomic<std::uint32_t> bell_{0};
   std::atomic<bool> stop_{false};
