@@ -1,12 +1,17 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <memory>
 #include <thread>
 
 namespace palpate {
+
+/// Bytes that lie between what one thread of a frame writes often and what the other reads or writes, so that
+/// their caches do not pass it to and fro: two lines of 64, which processors fetch together.
+inline constexpr std::size_t kOwnLines = 128;
 
 /// A thread beside the one that asks, for parts of a frame that do not need each other. It takes parts when
 /// it comes in time and is never waited for to come, so a frame is never later than alone but by a part that
@@ -22,11 +27,11 @@ class FrameHelper {
   FrameHelper(const FrameHelper&) = delete;
   FrameHelper& operator=(const FrameHelper&) = delete;
 
-  /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0), from the first part on, and
-  /// the helper's (lane 1), from the last: so each has what lies together, and much the same from frame to
-  /// frame, which is near in its caches. Returns when all have returned. At most kMostParts. What a part throws is thrown on here, once all have
-  /// ended. One caller at a time. Neither allocates nor blocks: for the other's last part it spins, then
-  /// yields.
+  /// Calls part(i, lane) for i = 0 … parts − 1, each once, on this thread (lane 0), from the first part on,
+  /// and the helper's (lane 1), from the last: so each has what lies together, and much the same from frame
+  /// to frame, which is near in its caches. Returns when all have returned. At most kMostParts. What a part
+  /// throws is thrown on here, once all have ended. One caller at a time. Neither allocates nor blocks: for
+  /// the other's last part it spins, then yields.
   template <class Part>
   void share(std::uint32_t parts, Part part) {
     run(

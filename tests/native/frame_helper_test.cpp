@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -15,12 +16,13 @@
 namespace palpate {
 namespace {
 
-/// Rounds of all sizes, one right after the other: each part once, in one of the lanes, and what it left is
-/// there afterwards.
+/// Rounds of all sizes, one right after the other: each part once, the first ones in the asker's lane, the
+/// others in the helper's, and what it left is there afterwards.
 TEST(FrameHelper, DoesEachPartOnce) {
   const auto helper = FrameHelper::make();
   ASSERT_EQ(helper == nullptr, processors() < 2);
   std::vector<std::uint32_t> times(300);  // each part its own word, no atomics: a thread sanitizer looks on
+  std::vector<int> lanes(times.size());
   std::array<std::uint64_t, FrameHelper::kLanes> sums{};
   for (std::uint32_t round = 0; round < 3000; ++round) {
     const std::uint32_t parts = round * 7 % 300;
@@ -28,10 +30,12 @@ TEST(FrameHelper, DoesEachPartOnce) {
     sums = {};
     share_parts(helper.get(), parts, [&](std::uint32_t part, int lane) {
       ++times[part];
+      lanes[part] = lane;
       sums[static_cast<std::size_t>(lane)] += part;
     });
     for (std::uint32_t i = 0; i < times.size(); ++i)
       ASSERT_EQ(times[i], i < parts ? 1u : 0u) << "part " << i << " of " << parts << " in round " << round;
+    ASSERT_TRUE(std::is_sorted(lanes.begin(), lanes.begin() + parts)) << parts << " in round " << round;
     ASSERT_EQ(sums[0] + sums[1], std::uint64_t{parts} * (parts - (parts > 0 ? 1 : 0)) / 2);
   }
 }

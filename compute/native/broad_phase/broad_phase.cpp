@@ -208,9 +208,9 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
   if (second_touch_.size() != lists.touch.room.size())
     second_touch_.resize(lists.touch.room.size());  // at first, and when the lists have been enlarged
   if (second_pairs_.size() != lists.pairs.room.size()) second_pairs_.resize(lists.pairs.room.size());
-  Candidates samples = lists,
-             second{
-                 .touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
+  alignas(kOwnLines) Candidates samples = lists;
+  alignas(kOwnLines) Candidates second{
+      .touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
   const std::uint32_t ahead = samples_of != nullptr ? 1 : 0;
   share_parts(&helper, static_cast<std::uint32_t>(count) + ahead, [&](std::uint32_t part, int lane) {
     if (part < ahead)

@@ -7,6 +7,7 @@
 #include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/listed_boxes.h"
 #include "compute/native/broad_phase/turned_boxes.h"
+#include "compute/native/frame_helper.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/scene_tables.h"
 
@@ -18,7 +19,7 @@ namespace palpate {
 class CandidatePairs {
  public:
   /// Which static triangles a thread has taken for its present tool triangle.
-  class Seen {
+  class alignas(kOwnLines) Seen {
    public:
     void resize(std::size_t statics) { by_.resize(statics); }
     std::uint64_t looks = 0;  ///< voxels and their list entries that it has looked at

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "compute/native/frame_helper.h"
 #include "compute/native/processor.h"
 #include "compute/scene/exact.h"
 
@@ -122,7 +123,7 @@ std::array<float, kLevels + 1> turned_boxes_pay_from(const TriangleTree& tree) {
 
 }  // namespace
 
-struct DepthSearch::Tables {
+struct alignas(kOwnLines) DepthSearch::Tables {
   static constexpr std::uint32_t kRuns = 512;    // runs of triangles (chosen: 600 KiB)
   static constexpr std::uint32_t kKnown = 1024;  // triangles (chosen: 200 KiB)
   static constexpr std::uint32_t kCubes = 512;   // cubes (chosen: 260 KiB)

@@ -41,7 +41,7 @@ class PressureField {
     std::uint64_t weight_q30;
   };
   /// What one of a frame's threads needs for itself, and what its samples say.
-  struct Lane {
+  struct alignas(kOwnLines) Lane {
     DepthSearch mockup_depth, tool_depth;
     InsideSearch in_mockup;
     std::uint32_t near_tool = DepthSearch::kNobody,

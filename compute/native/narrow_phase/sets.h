@@ -64,7 +64,7 @@ class ContactSets {
     bool in_cell;         ///< it is far enough from all of them
   };
   /// What one of a frame's threads keeps.
-  struct Lane {
+  struct alignas(kOwnLines) Lane {
     PairFilter filter;
     std::vector<gpu::ContactPair> pairs;   ///< of this frame: those that meet
     std::vector<OpenPoint> open;           ///< of the part at hand
