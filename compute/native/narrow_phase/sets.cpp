@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t kOpenPart = 256;  // open samples that one thread takes at a time: some 50 us (chosen)
 constexpr std::size_t kPairPart = 512;    // likewise of pairs
+constexpr std::size_t kTouchPart = 512;   // likewise of voxels that may be touched: some 20 us
 /// A moved triangle meets a moved segment only where, in the tool's own frame, they come this near, in steps:
 /// the segment's ends are off by 2.4 an axis, for the way to the tool and back is rounded twice and the
 /// matrix once, the corners by half; 5.1 in all (derived).
@@ -42,7 +43,7 @@ ContactSets ContactSets::make(const SceneGeometry& geometry, const SceneTables& 
   out.mockup_ = PartitionLookup(scene.mockup);
   out.fine_ = PartitionLookup(scene.fine);
   out.fine_exit_ = scene.fine_exit;
-  out.touched_.resize(scene.mockup.grid.boundary_voxels);
+  for (Lane& lane : out.lanes_) lane.touched.resize(scene.mockup.grid.boundary_voxels);
   out.mobiles_.resize(order.size());
   out.cells_ = CellMemo(scene.fine.grid.boundary_voxels);
   return out;
@@ -268,14 +269,15 @@ void ContactSets::decide_pairs(const PosedTool& tool, std::span<const PairCandid
   }
 }
 
-/// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell nothing new is
-/// not asked.
-void ContactSets::decide_voxels(PosedTool& tool, const Candidates& near) {
+/// Voxels that tool triangles touch: IMT, BMT, and those whose lists are BST. What would tell this part or
+/// thread nothing new is not asked. The search has moved the triangles.
+void ContactSets::decide_voxels(const PosedTool& tool, std::span<const TouchCandidate> candidates,
+                                Lane& lane) const {
   const GridConstants& grid = mockup_.grid();
   std::uint32_t place = kNone, id = 0, marks = 0;  // candidates of one tool triangle follow each other
-  const exact::Corners* corners = nullptr;         // its own, once they are asked for
+  const exact::Corners* corners = nullptr;         // of this triangle, once they are asked for
   exact::Box box{};
-  for (const TouchCandidate& candidate : near.touch.room.first(near.touch.count)) {
+  for (const TouchCandidate& candidate : candidates) {
     if (candidate.place != place) {
       place = candidate.place;
       id = order_[place];
@@ -286,30 +288,29 @@ void ContactSets::decide_voxels(PosedTool& tool, const Candidates& near) {
     const bool internal = candidate.boundary == kNoVoxel;
     const std::uint32_t outdone_by =
         internal ? kMobileHit | kMobileInternal : kMobileHit | kMobileInternal | kMobileBoundary;
-    if ((marks & outdone_by) != 0 && (internal || touched_[candidate.boundary] != 0)) continue;
+    if ((marks & outdone_by) != 0 && (internal || lane.touched[candidate.boundary] != 0)) continue;
     if (corners == nullptr) {
-      corners = &tool.corners(id);
+      corners = &tool.moved(id);
       box = exact::box_of(*corners);
     }
     const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
     const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
     if (!exact::triangle_touches_cube(*corners, box, grid.origin + grid.size * voxel, side)) continue;
     const std::uint32_t mark = internal ? kMobileInternal : kMobileBoundary;
+    if ((marks & mark) == 0) lane.mobiles.push_back({id, mark});
     marks |= mark;
-    mobiles_.add(id, mark);
-    if (internal || touched_[candidate.boundary] != 0) continue;
-    touched_[candidate.boundary] = 1;
-    touched_voxels_.push_back(candidate.boundary);
+    if (internal || lane.touched[candidate.boundary] != 0) continue;
+    lane.touched_voxels.push_back(candidate.boundary);
+    lane.touched[candidate.boundary] = 1;
   }
 }
 
 /// BST: what touched voxels list.
-void ContactSets::mark_lists(IdMarks& statics) {
-  for (std::size_t i = 0; i < touched_voxels_.size(); ++i) {
-    if (i + kAhead < touched_voxels_.size())
-      __builtin_prefetch(mockup_.list(touched_voxels_[i + kAhead]).data());
-    touched_[touched_voxels_[i]] = 0;
-    for (const std::uint32_t id : mockup_.list(touched_voxels_[i])) statics.add(id, kStaticListed);
+void ContactSets::mark_lists(const Lane& lane, IdMarks& statics) const {
+  const std::vector<std::uint32_t>& voxels = lane.touched_voxels;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    if (i + kAhead < voxels.size()) __builtin_prefetch(mockup_.list(voxels[i + kAhead]).data());
+    for (const std::uint32_t id : mockup_.list(voxels[i])) statics.add(id, kStaticListed);
   }
 }
 
@@ -328,20 +329,22 @@ void ContactSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-void ContactSets::decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
+void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
                          FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
   out.samples.clear();
   out.pairs.clear();
-  touched_voxels_.clear();
   statics.clear();
   mobiles_.clear();
 
   for (Lane& lane : lanes_) {
     lane.pairs.clear();
     lane.inside.clear();
+    lane.mobiles.clear();
+    for (const std::uint32_t voxel : lane.touched_voxels) lane.touched[voxel] = 0;
+    lane.touched_voxels.clear();
   }
   const auto lane_of = [&](int lane) -> Lane& { return lanes_[static_cast<std::size_t>(lane)]; };
 
@@ -358,14 +361,20 @@ void ContactSets::decide(PosedTool& tool, const Candidates& near, IdMarks& stati
     }
 
   const std::span<const FrameSample> open = near.open.room.first(near.open.count);
-  share_parts(helper, 1 + parts_of(open.size(), kOpenPart), [&](std::uint32_t part, int lane) {
-    if (part == 0) {
-      decide_voxels(tool, near);
-      mark_lists(statics);
+  const std::span<const TouchCandidate> touch = near.touch.room.first(near.touch.count);
+  const std::uint32_t of_touch = parts_of(touch.size(), kTouchPart);
+  share_parts(helper, of_touch + parts_of(open.size(), kOpenPart), [&](std::uint32_t part, int lane) {
+    if (part < of_touch) {
+      decide_voxels(tool, piece(touch, part, kTouchPart), lane_of(lane));
       return;
     }
-    decide_open(tool.pose(), piece(open, part - 1, kOpenPart), lane_of(lane));
+    decide_open(tool.pose(), piece(open, part - of_touch, kOpenPart), lane_of(lane));
   });
+  // IMT, BMT and BST.
+  for (const Lane& lane : lanes_) {
+    for (const MobileResult& mobile : lane.mobiles) mobiles_.add(mobile.id, mobile.state);
+    mark_lists(lane, statics);
+  }
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.
   const auto take = [&](const FrameSample& sample) {

@@ -40,7 +40,8 @@ class ContactSets {
 
   /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked
   /// there (kStatic…) and numbered. `helper` may be null.
-  void decide(PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper, FoundSets& out);
+  void decide(const PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
+              FoundSets& out);
 
   /// A box of world lattice points, low and high, that holds all that may lie inside the tool.
   std::array<Int3, 2> reach(const LatticePose& pose) const;
@@ -50,8 +51,6 @@ class ContactSets {
                                               std::span<const gpu::FrameSample> samples, int lane);
 
  private:
-  void decide_voxels(PosedTool& tool, const Candidates& near);
-  void mark_lists(IdMarks& statics);
   void list(IdMarks& statics, FoundSets& out);
   /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other:
   /// first corners of neighbours.
@@ -66,12 +65,17 @@ class ContactSets {
   /// What one of a frame's threads keeps.
   struct alignas(kOwnLines) Lane {
     PairFilter filter;
-    std::vector<gpu::ContactPair> pairs;   ///< of this frame: those that meet
-    std::vector<OpenPoint> open;           ///< of the part at hand
-    std::vector<Int3> points;              ///< likewise, in the tool's frame
-    std::vector<gpu::FrameSample> inside;  ///< of this frame: those that lie inside
-    std::vector<gpu::FrameSample> near;    ///< in V_bnd voxels of the fine partition
+    std::vector<gpu::ContactPair> pairs;        ///< of this frame: those that meet
+    std::vector<OpenPoint> open;                ///< of the part at hand
+    std::vector<Int3> points;                   ///< likewise, in the tool's frame
+    std::vector<gpu::FrameSample> inside;       ///< of this frame: those that lie inside
+    std::vector<gpu::FrameSample> near;         ///< in V_bnd voxels of the fine partition
+    std::vector<gpu::MobileResult> mobiles;     ///< of this frame: what touches voxels
+    std::vector<std::uint32_t> touched_voxels;  ///< of this frame: V_bnd ones
+    std::vector<std::uint8_t> touched;          ///< by V_bnd voxel: it is one of these
   };
+  void decide_voxels(const PosedTool& tool, std::span<const TouchCandidate> candidates, Lane& lane) const;
+  void mark_lists(const Lane& lane, IdMarks& statics) const;
   void decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& lane) const;
   void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
                   std::vector<OpenPoint>& open) const;
@@ -91,8 +95,6 @@ class ContactSets {
   std::span<const std::uint32_t> fine_exit_;
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
   CellMemo cells_;                               ///< of fine V_bnd voxels: whether they are inside
-  std::vector<std::uint8_t> touched_;            ///< by V_bnd voxel; 0 between frames
-  std::vector<std::uint32_t> touched_voxels_;    ///< of this frame
   IdMarks mobiles_;                              ///< C_m, with kMobile…
 };
 
