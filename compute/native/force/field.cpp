@@ -156,39 +156,36 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
   out.mockup_extras_ = Extras(geometry.mockup);
   out.tool_extras_ = Extras(geometry.tool);
   out.lever_shift_ = lever_shift(geometry.tool_radius);
-  out.own_begin_.assign(1, 0);
-  const std::size_t triangles = geometry.tool.triangles.size();
-  const double density = static_cast<double>(geometry.sample_spacing) * geometry.sample_spacing;
-  if (geometry.tool_surface.area / density + static_cast<double>(triangles) >
-      static_cast<double>(kMostListed)) {
-    out.own_begin_.clear();
-    return out;
-  }
-  std::vector<std::pair<int, Int3>> samples;  // level and point, of a triangle
-  for (std::uint32_t id = 0; id < triangles; ++id) {
-    samples.clear();
-    out.work_out_tool_samples(id, [&](const Int3& p, int level) { samples.emplace_back(level, p); });
-    std::ranges::stable_sort(samples, std::ranges::greater{}, &std::pair<int, Int3>::first);
-    for (const auto& [level, point] : samples) {
-      out.own_samples_.push_back(point);
-      out.own_levels_.push_back(static_cast<std::uint8_t>(level));
-    }
-    out.own_begin_.push_back(static_cast<std::uint32_t>(out.own_samples_.size()));
-  }
+  out.list_tool_samples();
   return out;
 }
 
-/// How many of a tool triangle's listed samples weigh something in this frame: the first ones.
-std::uint32_t PressureField::own_count(std::uint32_t mobile) const {
+void PressureField::list_tool_samples() {
   const LatticeMesh& tool = geometry_->tool;
-  if (own_begin_.empty() || tool.field_weight_q30[mobile] == 0) return 0;
-  const std::uint32_t begin = own_begin_[mobile], end = own_begin_[mobile + 1],
-                      place = tool.levels_of[mobile];
-  if (tool_level_.whole == 0 || place == 0) return end - begin;
-  const std::uint32_t least = std::min(tool_level_.whole, tool.side_levels[place - 1].coarsest);
-  const auto first = own_levels_.begin() + begin;
-  return static_cast<std::uint32_t>(
-      std::upper_bound(first, own_levels_.begin() + end, least, std::greater{}) - first);
+  const double density = static_cast<double>(geometry_->sample_spacing) * geometry_->sample_spacing;
+  if (geometry_->tool_surface.area / density + static_cast<double>(tool.triangles.size()) >
+      static_cast<double>(kMostListed))
+    return;
+  own_.resize(tool.triangles.size());
+  std::vector<std::pair<int, Int3>> samples;  // level and point, of a triangle
+  for (std::uint32_t id = 0; id < own_.size(); ++id) {
+    if (tool.field_weight_q30[id] == 0) continue;
+    samples.clear();
+    work_out_tool_samples(id, [&](const Int3& p, int level) { samples.emplace_back(level, p); });
+    std::ranges::stable_sort(samples, std::ranges::greater{}, &std::pair<int, Int3>::first);
+    OwnSamples& own = own_[id];
+    own.begin = static_cast<std::uint32_t>(own_samples_.size());
+    const std::uint32_t side = tool.levels_of[id],
+                        coarsest = side == 0 ? 0 : tool.side_levels[side - 1].coarsest;
+    for (std::uint32_t level = 0; level < own.weigh.size(); ++level)
+      own.weigh[level] = static_cast<std::uint32_t>(std::ranges::count_if(samples, [&](const auto& sample) {
+        return sample.first >= static_cast<int>(std::min(level, coarsest));
+      }));
+    for (const auto& [level, point] : samples) {
+      own_samples_.push_back(point);
+      own_levels_.push_back(static_cast<std::uint8_t>(level));
+    }
+  }
 }
 
 template <class Take>
@@ -424,9 +421,10 @@ void PressureField::divide_tool(std::span<const MobileResult> mobiles) {
   const std::size_t size = std::max(kPart, own_samples_.size() / kMostOfABody);
   tool_parts_.clear();
   tool_counts_.clear();
+  const std::uint32_t level = std::min<std::uint32_t>(tool_level_.whole, kSampleLevels);
   std::size_t room = 0;  // of the last part
   for (std::uint32_t i = 0; i < mobiles.size(); ++i) {
-    const std::size_t count = tool_counts_.emplace_back(own_count(mobiles[i].id));
+    const std::size_t count = tool_counts_.emplace_back(own_.empty() ? 0 : own_[mobiles[i].id].weigh[level]);
     for (std::size_t first = 0; first == 0 || first < count;) {
       if (room == 0) {
         tool_parts_.push_back({i, static_cast<std::uint32_t>(first)});
@@ -467,10 +465,10 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
       push(p, weight);
     };
     const std::uint32_t first = i == begin.mobile ? begin.sample : 0;
-    if (own_begin_.empty()) {
+    if (own_.empty()) {
       if (own.field_weight_q30[result.id] != 0) work_out_tool_samples(result.id, weighed);
     } else {
-      const std::uint32_t all = own_begin_[result.id], last = i == end.mobile ? end.sample : tool_counts_[i];
+      const std::uint32_t all = own_[result.id].begin, last = i == end.mobile ? end.sample : tool_counts_[i];
       for (std::uint32_t k = all + first; k < all + last; ++k) weighed(own_samples_[k], own_levels_[k]);
     }
     if (first == 0)

@@ -53,6 +53,12 @@ class PressureField {
     std::vector<gpu::FrameSample> asked;  ///< extra samples; for a triangle their place in the next one
     std::vector<AskedExtra> extras;
   };
+  /// Grid samples of a tool triangle in the list of all: where they begin, the coarsest first, and how many
+  /// of them weigh something in a frame of each level.
+  struct OwnSamples {
+    std::uint32_t begin = 0;
+    std::array<std::uint32_t, kSampleLevels + 1> weigh{};
+  };
   /// Where a part of C_m's samples begins: which of C_m, and which of its samples.
   struct ToolPart {
     std::uint32_t mobile, sample;
@@ -88,7 +94,6 @@ class PressureField {
                    std::span<CarrierSums> carriers, Lane& lane) const;
   void sum_extras(const LatticePose& pose, ContactSets& sets, std::span<const gpu::StaticResult> statics,
                   std::span<CarrierSums> carriers, int number);
-  std::uint32_t own_count(std::uint32_t mobile) const;
   void divide_tool(std::span<const gpu::MobileResult> mobiles);
   void sum_tool(const LatticePose& pose, std::span<const gpu::MobileResult> mobiles, std::size_t part,
                 Lane& lane) const;
@@ -100,6 +105,7 @@ class PressureField {
     std::uint32_t whole = 0, between = 0;
     bool all() const { return (whole | between) == 0; }
   };
+  void list_tool_samples();
   void choose_levels(const FoundSets& found, std::uint32_t coarser);
   static std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level,
                                  const Level& taken);
@@ -109,14 +115,13 @@ class PressureField {
   Extras mockup_extras_, tool_extras_;
   bool tool_has_inside_ = true;
   int lever_shift_ = 0;
-  std::vector<std::uint32_t>
-      own_begin_;  ///< by tool triangle, and one more; empty: the tool's samples are too many to list
+  std::vector<OwnSamples> own_;    ///< by tool triangle; empty: the tool's samples are too many to list
   std::vector<Int3> own_samples_;  ///< of the tool, in its lattice frame; of a triangle the coarsest first
   std::vector<std::uint8_t> own_levels_;         ///< of these
   Level mockup_level_, tool_level_;              ///< of this frame
   const Ignored* ignored_ = nullptr;             ///< of this frame
   std::vector<ToolPart> tool_parts_;             ///< of this frame
-  std::vector<std::uint32_t> tool_counts_;       ///< likewise: own_count(), by place in C_m
+  std::vector<std::uint32_t> tool_counts_;       ///< likewise: how many samples are asked, by place in C_m
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
 };
 

@@ -17,9 +17,9 @@ class IdMarks {
     words_.assign((ids + 63) / 64, Word{});
     any_.assign((words_.size() + 63) / 64, 0);
   }
+  /// Costs little where nothing is marked.
   void clear() {
-    for (std::size_t w = next_word(0); w != words_.size(); w = next_word(w + 1)) words_[w] = Word{};
-    any_.assign(any_.size(), 0);
+    take_all([](std::uint32_t, std::uint32_t) {});
   }
   /// `mark`: 1, 2 or 4.
   void add(std::uint32_t id, std::uint32_t mark) {
@@ -30,15 +30,18 @@ class IdMarks {
   /// All of an id's, 0: none.
   std::uint32_t marks(std::uint32_t id) const { return words_[id >> 6].of(id & 63); }
 
-  /// Calls take(id, marks) for all that have a mark, ascending.
+  /// Calls take(id, marks) for all that have a mark, ascending, and unmarks them, as long as they are in the
+  /// caches.
   template <class Take>
-  void for_each(Take&& take) const {
+  void take_all(Take&& take) {
     for (std::size_t w = next_word(0); w != words_.size(); w = next_word(w + 1)) {
-      const Word& word = words_[w];
+      Word& word = words_[w];
       for (std::uint64_t left = word.all(); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
         take(static_cast<std::uint32_t>(64 * w) + bit, word.of(bit));
       }
+      word = Word{};
+      any_[w >> 6] &= ~(std::uint64_t{1} << (w & 63));
     }
   }
 

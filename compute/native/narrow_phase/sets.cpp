@@ -305,25 +305,26 @@ void ContactSets::decide_voxels(const PosedTool& tool, std::span<const TouchCand
   }
 }
 
-/// BST: what touched voxels list.
-void ContactSets::mark_lists(const Lane& lane, IdMarks& statics) const {
+/// BST: what touched voxels list. Afterwards none is touched.
+void ContactSets::mark_lists(Lane& lane, IdMarks& statics) const {
   const std::vector<std::uint32_t>& voxels = lane.touched_voxels;
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     if (i + kAhead < voxels.size()) __builtin_prefetch(mockup_.list(voxels[i + kAhead]).data());
     for (const std::uint32_t id : mockup_.list(voxels[i])) statics.add(id, kStaticListed);
   }
+  lane.untouch();
 }
 
 /// C_s and C_m, and how many there are of CST, EST and the tool's sets.
 void ContactSets::list(IdMarks& statics, FoundSets& out) {
   FrameState& state = out.state;
-  statics.for_each([&](std::uint32_t id, std::uint32_t marks) {
+  statics.take_all([&](std::uint32_t id, std::uint32_t marks) {
     const bool hit = (marks & kStaticHit) != 0;
     state.cst += hit ? 1u : 0u;
     state.est += !hit && (marks & kStaticSampled) != 0 ? 1u : 0u;
     out.statics.push_back({id, marks, kNone, kNone});
   });
-  mobiles_.for_each([&](std::uint32_t id, std::uint32_t marks) {
+  mobiles_.take_all([&](std::uint32_t id, std::uint32_t marks) {
     ((marks & kMobileHit) != 0 ? state.cmt : (marks & kMobileInternal) != 0 ? state.imt : state.bmt) += 1;
     out.mobiles.push_back({id, marks});
   });
@@ -336,15 +337,14 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
   out.mobiles.clear();
   out.samples.clear();
   out.pairs.clear();
+  // Of a frame that ended for want of memory: others leave nothing marked or touched.
   statics.clear();
   mobiles_.clear();
-
   for (Lane& lane : lanes_) {
     lane.pairs.clear();
     lane.inside.clear();
     lane.mobiles.clear();
-    for (const std::uint32_t voxel : lane.touched_voxels) lane.touched[voxel] = 0;
-    lane.touched_voxels.clear();
+    lane.untouch();
   }
   const auto lane_of = [&](int lane) -> Lane& { return lanes_[static_cast<std::size_t>(lane)]; };
 
@@ -360,30 +360,28 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
       mobiles_.add(pair.mobile, kMobileHit);
     }
 
-  const std::span<const FrameSample> open = near.open.room.first(near.open.count);
-  const std::span<const TouchCandidate> touch = near.touch.room.first(near.touch.count);
-  const std::uint32_t of_touch = parts_of(touch.size(), kTouchPart);
-  share_parts(helper, of_touch + parts_of(open.size(), kOpenPart), [&](std::uint32_t part, int lane) {
-    if (part < of_touch) {
-      decide_voxels(tool, piece(touch, part, kTouchPart), lane_of(lane));
-      return;
-    }
-    decide_open(tool.pose(), piece(open, part - of_touch, kOpenPart), lane_of(lane));
-  });
-  // IMT, BMT and BST.
-  for (const Lane& lane : lanes_) {
-    for (const MobileResult& mobile : lane.mobiles) mobiles_.add(mobile.id, mobile.state);
-    mark_lists(lane, statics);
-  }
-
   // Samples inside the tool: EST. A first corner tells EST and does not count.
   const auto take = [&](const FrameSample& sample) {
     statics.add(sample.static_id & ~kCornerProbe, kStaticSampled);
     if ((sample.static_id & kCornerProbe) == 0) out.samples.push_back(sample);
   };
-  for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
-  for (const Lane& lane : lanes_)
+  const std::span<const FrameSample> open = near.open.room.first(near.open.count);
+  const std::span<const TouchCandidate> touch = near.touch.room.first(near.touch.count);
+  const std::uint32_t of_touch = parts_of(touch.size(), kTouchPart);
+  share_parts(helper, 1 + of_touch + parts_of(open.size(), kOpenPart), [&](std::uint32_t part, int lane) {
+    if (part == 0)
+      for (const FrameSample& sample : near.inside.room.first(near.inside.count)) take(sample);
+    else if (part <= of_touch)
+      decide_voxels(tool, piece(touch, part - 1, kTouchPart), lane_of(lane));
+    else
+      decide_open(tool.pose(), piece(open, part - 1 - of_touch, kOpenPart), lane_of(lane));
+  });
+  // IMT, BMT, BST and the rest of EST.
+  for (Lane& lane : lanes_) {
+    for (const MobileResult& mobile : lane.mobiles) mobiles_.add(mobile.id, mobile.state);
+    mark_lists(lane, statics);
     for (const FrameSample& sample : lane.inside) take(sample);
+  }
   for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool.pose(), sample.point)) take(sample);

@@ -73,9 +73,13 @@ class ContactSets {
     std::vector<gpu::MobileResult> mobiles;     ///< of this frame: what touches voxels
     std::vector<std::uint32_t> touched_voxels;  ///< of this frame: V_bnd ones
     std::vector<std::uint8_t> touched;          ///< by V_bnd voxel: it is one of these
+    void untouch() {
+      for (const std::uint32_t voxel : touched_voxels) touched[voxel] = 0;
+      touched_voxels.clear();
+    }
   };
   void decide_voxels(const PosedTool& tool, std::span<const TouchCandidate> candidates, Lane& lane) const;
-  void mark_lists(const Lane& lane, IdMarks& statics) const;
+  void mark_lists(Lane& lane, IdMarks& statics) const;
   void decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& lane) const;
   void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
                   std::vector<OpenPoint>& open) const;
