@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/tool_order.h"
 #include "model/contact/contact_areas.h"
 
@@ -133,10 +134,9 @@ std::span<const gpu::ContactPair> Frame::pairs() const {
 }
 
 std::uint64_t Frame::memory_bytes() const {
-  return sizeof touch_[0] * std::uint64_t{touch_.size()} +
-         sizeof candidate_pairs_[0] * std::uint64_t{candidate_pairs_.size()} +
-         sizeof chunks_[0] * std::uint64_t{chunks_.size()} +
-         sizeof inside_[0] * (std::uint64_t{inside_.size()} + open_.size());
+  return sizeof *this + bytes_of(order_) + runs_.bytes() + posed_.bytes() + broad_phase_.bytes() +
+         contact_->bytes() + bytes_of(touch_) + bytes_of(candidate_pairs_) + bytes_of(chunks_) +
+         bytes_of(inside_) + bytes_of(open_);
 }
 
 }  // namespace palpate::native

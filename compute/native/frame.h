@@ -38,6 +38,7 @@ class Frame final : public PoseQuery {
   void share(bool wanted) { sharing_ = wanted; }
   /// Pairs that intersect at the last query's pose.
   std::span<const gpu::ContactPair> pairs() const;
+  /// But for what is the scene's.
   std::uint64_t memory_bytes() const;
 
  private:

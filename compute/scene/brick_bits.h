@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/scene_tables.h"
 #include "model/lattice/vector.h"
 
@@ -34,6 +35,8 @@ inline constexpr BrickMasks kBrickMasks;
 /// and one block, with nothing to decide on the way.
 class BrickBits {
  public:
+  std::uint64_t bytes() const { return bytes_of(block_) + bytes_of(bits_); }
+
   using Block = std::array<std::uint64_t, 8>;  ///< by z: bit x + 8y
 
   enum class Of { kOccupied, kInternal };  ///< not V_ext; V_int

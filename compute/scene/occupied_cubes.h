@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compute/scene/brick_bits.h"
+#include "compute/scene/bytes_of.h"
 
 namespace palpate {
 
@@ -15,6 +16,7 @@ namespace palpate {
 /// (shaders/lib/broad_phase/occupied.glsl).
 class OccupiedCubes {
  public:
+  std::uint64_t bytes() const { return bytes_of(place_) + bytes_of(cubes_); }
   /// `occupied`: voxels that are not V_ext. Allocates four bytes a brick, and 256 for each that is not V_int
   /// but has an occupied voxel, or has one in the next bricks along the axes.
   void make(const BrickBits& occupied) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compute/native/processor.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/search_tables.h"
 
 namespace palpate {
@@ -139,6 +140,14 @@ bool BroadPhase::meets(BrickBits::Range voxels) const {
 
 void BroadPhase::share() {
   for (CandidatePairs::Seen& seen : seen_) seen.resize(statics_);
+}
+
+std::uint64_t BroadPhase::bytes() const {
+  std::uint64_t sum = bytes_of(second_touch_) + bytes_of(second_pairs_) + samples_.bytes() + bytes_of(runs_) +
+                      bytes_of(occupied_) + cubes_.bytes();
+  for (const CandidatePairs::Seen& seen : seen_) sum += seen.bytes();
+  for (const BrickBits& level : occupied_) sum += level.bytes();
+  return sum;
 }
 
 /// A bit each: which of eight ranges of voxels have one that is occupied.

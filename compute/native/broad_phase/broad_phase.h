@@ -44,6 +44,7 @@ class BroadPhase {
   bool find(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   /// Voxels, list entries and samples that the last find() looked at.
   std::uint64_t looks() const { return looks_; }
+  std::uint64_t bytes() const;
 
  private:
   struct Box {

@@ -8,6 +8,7 @@
 #include "compute/native/broad_phase/listed_boxes.h"
 #include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/native/frame_helper.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/scene_tables.h"
 
@@ -22,6 +23,7 @@ class CandidatePairs {
   class alignas(kOwnLines) Seen {
    public:
     void resize(std::size_t statics) { by_.resize(statics); }
+    std::uint64_t bytes() const { return bytes_of(by_); }
     std::uint64_t looks = 0;  ///< voxels and their list entries that it has looked at
 
    private:

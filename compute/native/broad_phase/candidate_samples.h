@@ -7,6 +7,7 @@
 #include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/solid_bits.h"
 #include "compute/native/narrow_phase/open_inside.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
 #include "model/lattice/lattice.h"
@@ -26,6 +27,10 @@ class CandidateSamples {
   /// Appends to lists.inside and open, or to lists.samples, for bricks first … last of the mock-up's grid.
   /// Where it has no room, the search ends.
   void find(const LatticePose& pose, const Int3& first, const Int3& last, Candidates& lists) const;
+  /// But for what is shared.
+  std::uint64_t bytes() const {
+    return bytes_of(brick_.near) + bytes_of(octant_.near) + cubes_.solid.bytes();
+  }
 
  private:
   /// Cubes of 8³ of Near's, with a border: whether the centre of a cube of mock-up voxels there has one of

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/exact.h"
 #include "model/lattice/lattice.h"
 #include "model/lattice/lattice_mesh.h"
@@ -33,6 +34,7 @@ class PosedTool {
   }
   /// Of a triangle that corners() has moved since begin(): any number of threads.
   const exact::Corners& moved(std::uint32_t id) const { return corners_[id]; }
+  std::uint64_t bytes() const { return bytes_of(moved_) + bytes_of(corners_); }
 
  private:
   const LatticeMesh* tool_;

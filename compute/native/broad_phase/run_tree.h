@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compute/native/broad_phase/turned_boxes.h"
+#include "compute/scene/bytes_of.h"
 #include "model/lattice/lattice_mesh.h"
 
 namespace palpate {
@@ -18,6 +19,11 @@ class RunTree {
   /// `order`: ids of the tool's triangles by place; it outlives this. Allocates.
   RunTree(const LatticeMesh& tool, std::span<const std::uint32_t> order);
   std::span<const std::uint32_t> order() const { return order_; }
+  std::uint64_t bytes() const {
+    std::uint64_t sum = bytes_of(levels_);
+    for (const auto& level : levels_) sum += bytes_of(level);
+    return sum;
+  }
 
   /// Eight nodes of a level, or eight runs (level 0).
   struct Group {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compute/scene/brick_bits.h"
+#include "compute/scene/bytes_of.h"
 
 namespace palpate {
 
@@ -37,6 +38,7 @@ class SolidBits {
   /// Of the brick x + size.x · (y + size.y · z): which block it has.
   std::uint32_t number(std::size_t brick) const { return number_[brick]; }
   const Block& block(std::uint32_t number) const { return blocks_[number]; }
+  std::uint64_t bytes() const { return bytes_of(number_) + bytes_of(blocks_); }
 
  private:
   Int3 size_{0};

@@ -10,6 +10,7 @@
 
 #include "compute/native/frame_helper.h"
 #include "compute/native/processor.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/exact.h"
 
 namespace palpate {
@@ -284,6 +285,10 @@ DepthSearch& DepthSearch::operator=(DepthSearch&&) noexcept = default;
 DepthSearch::~DepthSearch() = default;
 
 std::uint64_t DepthSearch::looks() const { return tables_->looks; }
+
+std::uint64_t DepthSearch::bytes() const {
+  return sizeof *tables_ + bytes_of(tables_->runs) + bytes_of(tables_->known) + bytes_of(tables_->cubes);
+}
 
 DepthSearch::Depth DepthSearch::below(const Int3& point, std::uint32_t guess) {
   Search search{.point = point};

@@ -33,6 +33,7 @@ class DepthSearch {
   Depth below(const Int3& point, std::uint32_t guess);
   /// How many groups of eight boxes or triangles it has looked at in all.
   std::uint64_t looks() const;
+  std::uint64_t bytes() const;
 
   struct Tables;  ///< depth_search.cpp's own
 

@@ -484,6 +484,22 @@ std::uint64_t PressureField::looks() const {
   return out;
 }
 
+std::uint64_t PressureField::Extras::bytes() const {
+  std::uint64_t sum = bytes_of(has_) + bytes_of(before_);
+  for (const Level& level : levels_) sum += bytes_of(level.begin) + bytes_of(level.number);
+  return sum;
+}
+
+std::uint64_t PressureField::bytes() const {
+  std::uint64_t sum = mockup_extras_.bytes() + tool_extras_.bytes() + bytes_of(own_) +
+                      bytes_of(own_samples_) + bytes_of(own_levels_) + bytes_of(tool_parts_) +
+                      bytes_of(tool_counts_);
+  for (const Lane& lane : lanes_)
+    sum += lane.mockup_depth.bytes() + lane.tool_depth.bytes() + lane.in_mockup.bytes() +
+           bytes_of(lane.touched) + bytes_of(lane.asked) + bytes_of(lane.extras);
+  return sum;
+}
+
 void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundSets& found,
                         const Wanted& wanted, FrameHelper* helper, Contacts& out) {
   choose_levels(found, wanted.ignored != nullptr ? wanted.ignored->coarser : 0);

@@ -8,6 +8,7 @@
 #include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/sets.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/triangle_tree.h"
 #include "model/contact/contacts.h"
 #include "model/scene/scene_geometry.h"
@@ -32,6 +33,7 @@ class PressureField {
            FrameHelper* helper, Contacts& out);
   /// Groups of eight boxes or triangles that sums have looked at in all.
   std::uint64_t looks() const;
+  std::uint64_t bytes() const;
 
  private:
   struct Push;
@@ -73,6 +75,7 @@ class PressureField {
     /// Calls take(extra) for each of a triangle's that may weigh something between a level and the next.
     template <class Take>
     void for_each(std::uint32_t triangle, std::uint32_t level, Take&& take) const;
+    std::uint64_t bytes() const;
 
    private:
     std::span<const ExtraSample> all_;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "compute/scene/bytes_of.h"
+
 namespace palpate {
 
 /// Remembers answers that depend on a voxel and on the sides of the planes of what it lists, and on nothing
@@ -32,6 +34,7 @@ class CellMemo {
   void prefetch(std::uint32_t voxel, std::uint32_t sides) const {
     __builtin_prefetch(&entries_[place(voxel, sides)]);
   }
+  std::uint64_t bytes() const { return bytes_of(entries_); }
   void keep(std::uint32_t voxel, std::uint32_t sides, bool answer) {
     at(voxel, sides).store(key(voxel, sides) << 1 | (answer ? 1u : 0u), std::memory_order_relaxed);
   }

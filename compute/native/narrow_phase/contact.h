@@ -10,6 +10,7 @@
 #include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/native/narrow_phase/sets.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/partition_lookup.h"
 #include "compute/scene/scene_tables.h"
 #include "compute/scene/search_tables.h"
@@ -42,6 +43,10 @@ class NarrowPhase {
   }
   /// After solve().
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }
+  std::uint64_t bytes() const {
+    return sizeof *this + bytes_of(tool_boxes_) + tool_triangles_.bytes() + statics_.bytes() +
+           in_tool_.bytes() + sets_.bytes() + field_.bytes() + found_.bytes();
+  }
 
  private:
   NarrowPhase() = default;

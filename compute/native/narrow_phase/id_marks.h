@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute/scene/bytes_of.h"
+
 namespace palpate {
 
 /// Marks on ids, three bits each (values 1, 2 and 4), for sets that a frame finds in any order and then wants
@@ -27,6 +29,7 @@ class IdMarks {
     if (word.all() == 0) any_[id >> 12] |= std::uint64_t{1} << (id >> 6 & 63);
     word.marks[mark >> 1] |= std::uint64_t{1} << (id & 63);
   }
+  std::uint64_t bytes() const { return bytes_of(words_) + bytes_of(any_); }
   /// All of an id's, 0: none.
   std::uint32_t marks(std::uint32_t id) const { return words_[id >> 6].of(id & 63); }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compute/native/narrow_phase/open_inside.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/partition_lookup.h"
 #include "model/lattice/lattice_mesh.h"
 
@@ -30,6 +31,8 @@ class InsideSearch {
   static constexpr std::size_t kMostPoints = 256;
   /// For a body that is not closed and is asked much. `known` is of the same body and partition.
   void use(std::shared_ptr<const OpenInside> known) { known_ = std::move(known); }
+  /// But for what is shared.
+  std::uint64_t bytes() const { return bytes_of(way_) + bytes_of(middle_) + bytes_of(windings_); }
   /// Of a point in a V_bnd voxel of a body that is not closed, of number `boundary`; without cells.
   bool inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary);
 

@@ -49,6 +49,15 @@ ContactSets ContactSets::make(const SceneGeometry& geometry, const SceneTables& 
   return out;
 }
 
+std::uint64_t ContactSets::bytes() const {
+  std::uint64_t sum = cells_.bytes() + mobiles_.bytes();
+  for (const Lane& lane : lanes_)
+    sum += bytes_of(lane.pairs) + bytes_of(lane.open) + bytes_of(lane.points) + bytes_of(lane.inside) +
+           bytes_of(lane.near) + bytes_of(lane.mobiles) + bytes_of(lane.touched_voxels) +
+           bytes_of(lane.touched);
+  return sum;
+}
+
 /// The tool lattice point of a world lattice point (section 4). |p − translation| < 2^31: sums within 3 ·
 /// 2^61.
 Int3 ContactSets::tool_point(const LatticePose& pose, const Int3& point) const {

@@ -11,6 +11,7 @@
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/pair_filter.h"
+#include "compute/scene/bytes_of.h"
 #include "compute/scene/partition_lookup.h"
 #include "compute/scene/scene_tables.h"
 #include "model/scene/scene_geometry.h"
@@ -25,6 +26,10 @@ struct FoundSets {
   std::vector<gpu::MobileResult> mobiles;  ///< C_m
   std::vector<gpu::FrameSample> samples;   ///< that count
   std::vector<gpu::ContactPair> pairs;
+
+  std::uint64_t bytes() const {
+    return bytes_of(statics) + bytes_of(mobiles) + bytes_of(samples) + bytes_of(pairs);
+  }
 };
 
 /// Decides about the lists of what is near what the device engine's shaders decide there (docs/EXACTNESS.md
@@ -49,6 +54,7 @@ class ContactSets {
   /// the frame's thread that asks.
   std::span<const gpu::FrameSample> inside_of(const LatticePose& pose,
                                               std::span<const gpu::FrameSample> samples, int lane);
+  std::uint64_t bytes() const;
 
  private:
   void list(IdMarks& statics, FoundSets& out);
