@@ -18,11 +18,24 @@ namespace {
 /// by a few times that. Chosen: 2^9.
 constexpr float kMargin = 512;
 
+/// Where Embree's memory counts that this thread takes and gives back, bytes; null: nowhere.
+thread_local std::int64_t* counted_at = nullptr;
+
 /// One device for the program. Embree's threads=1 alone does not keep its collisions to one thread; see
 /// in_one_thread.
 RTCDevice device() {
   struct Holder {
     RTCDevice device = rtcNewDevice("threads=1");
+    Holder() {
+      if (device == nullptr) return;
+      rtcSetDeviceMemoryMonitorFunction(
+          device,
+          [](void*, ssize_t bytes, bool) {
+            if (counted_at != nullptr) *counted_at += bytes;
+            return true;
+          },
+          nullptr);
+    }
     ~Holder() { rtcReleaseDevice(device); }
   };
   static Holder holder;
@@ -53,6 +66,7 @@ struct BoxTree::Embree {
   std::vector<Box> boxes;
   RTCScene scene = nullptr;
   RTCGeometry geometry = nullptr;
+  std::int64_t bytes = 0;  ///< that Embree has taken for the hierarchy
 };
 
 BoxTree::BoxTree() : embree_(std::make_unique<Embree>()) {
@@ -95,9 +109,11 @@ BoxTree::~BoxTree() {
 void BoxTree::build(std::vector<Box> boxes) {
   embree_->boxes = std::move(boxes);
   in_one_thread([this] {
+    counted_at = &embree_->bytes;
     rtcSetGeometryUserPrimitiveCount(embree_->geometry, static_cast<unsigned>(embree_->boxes.size()));
     rtcCommitGeometry(embree_->geometry);
     rtcCommitScene(embree_->scene);
+    counted_at = nullptr;
   });
   if (rtcGetDeviceError(device()) != RTC_ERROR_NONE)
     throw std::runtime_error("Embree could not build a hierarchy of boxes.");
@@ -177,6 +193,9 @@ void BoxTree::meeting_pairs(const BoxTree& a, const BoxTree& b,
 }
 
 /// Embree keeps about 64 bytes a primitive in its nodes and leaves (estimated; it gives no figure a scene).
-std::uint64_t BoxTree::memory_bytes() const { return embree_->boxes.size() * (sizeof(Box) + 64); }
+std::uint64_t BoxTree::memory_bytes() const {
+  return embree_->boxes.capacity() * sizeof(Box) +
+         static_cast<std::uint64_t>(std::max(embree_->bytes, std::int64_t{0}));
+}
 
 }  // namespace palpate::cpu_ref

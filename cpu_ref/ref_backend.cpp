@@ -79,7 +79,9 @@ class Asked final : public PoseQuery {
   }
 
   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs() const { return pairs_; }
-  std::uint64_t memory_bytes() const { return tool_tree_.memory_bytes(); }
+  std::uint64_t memory_bytes() const {
+    return tool_tree_.memory_bytes() + sizeof pairs_[0] * std::uint64_t{pairs_.capacity()};
+  }
 
  private:
   void answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
@@ -228,7 +230,8 @@ class RefBackend final : public CollisionBackend {
   std::uint64_t memory_bytes() const override {
     if (!scene_) return 0;
     std::uint64_t sum = scene_->mockup.memory_bytes() + scene_->tool.memory_bytes() +
-                        scene_->mockup_tree.memory_bytes() + asked_->memory_bytes();
+                        scene_->mockup_tree.memory_bytes() + scene_->tool_rest_tree.memory_bytes() +
+                        asked_->memory_bytes();
     for (const auto& helper : helpers_) sum += helper->memory_bytes();
     return sum;
   }
