@@ -38,7 +38,8 @@ Result<void> PoseQuery::touch_together(std::span<const LatticePose> poses, std::
 }
 
 Result<void> CollisionBackend::touches(std::span<const LatticePose> poses, std::span<std::uint8_t> bits) {
-  constexpr std::size_t kAtOnce = 1024;  // contacts that are held (chosen: some megabytes)
+  constexpr std::size_t kAtOnce =
+      64;  // contacts that are held (chosen: a large one's lists take half a megabyte)
   std::vector<Contacts> contacts(std::min(kAtOnce, poses.size()));
   for (std::size_t first = 0; first < poses.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, poses.size() - first);

@@ -8,12 +8,13 @@
 #include "service/cli/scene_host.h"
 #include "service/cli/text_output.h"
 #include "service/queries/path_check.h"
+#include "service/queries/portions.h"
 #include "service/queries/query_json.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
+constexpr std::size_t kMostAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
 
 }  // namespace
 
@@ -33,10 +34,10 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
     if (!at) return at.error();
     lattice.push_back(*at);
   }
-  std::vector<std::uint8_t> bits(std::min(kAtOnce, poses.size()));
+  std::vector<std::uint8_t> bits(std::min(kMostAtOnce, poses.size()));
   std::string text;
-  for (std::size_t first = 0; first < poses.size(); first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, poses.size() - first);
+  for (Portions portions(poses.size(), kMostAtOnce); portions.next();) {
+    const std::size_t first = portions.first(), count = portions.count();
     text.clear();
     if (auto done = backend.touches(std::span(lattice).subspan(first, count), std::span(bits).first(count));
         !done)

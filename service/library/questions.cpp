@@ -14,6 +14,7 @@
 #include "service/library/open_scene.h"
 #include "service/queries/first_contact.h"
 #include "service/queries/lone_query.h"
+#include "service/queries/portions.h"
 
 using namespace palpate;
 using namespace palpate::library;
@@ -195,10 +196,10 @@ Result<void> given(const palpate_scene* scene, const void* poses, const void* co
 Result<void> touches(CollisionBackend& backend, const SceneGeometry& geometry, const double* poses,
                      std::size_t count, const TouchRule& rule, std::uint8_t* bits, Watch& watch) {
   std::vector<LatticePose> lattice;
-  for (std::size_t first = 0; first < count; first += kTouchesAtOnce) {
+  for (Portions portions(count, kTouchesAtOnce); portions.next();) {
+    const std::size_t first = portions.first(), now = portions.count();
     if (!watch.tell("poses", static_cast<double>(first) / static_cast<double>(count)))
       return stopped(first, count);
-    const std::size_t now = std::min(kTouchesAtOnce, count - first);
     lattice.clear();
     for (std::size_t i = first; i < first + now; ++i) {
       const auto pose = pose_at(poses, i);
