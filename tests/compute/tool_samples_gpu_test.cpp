@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "compute/gpu/gpu_backend.h"
@@ -80,10 +82,29 @@ TEST_F(ToolSamples, OfATriangleAreTheReferencesThoseOfTheHighestLevelFirst) {
   EXPECT_EQ(points.size(), 4 * all);
 }
 
+/// A ball of long triangles that lie every way, and bumps, so that no three of its corners are alike; more
+/// samples than are listed, of which a small block meets few.
+equivalence::Triangles bumpy_ball() {
+  constexpr int kRound = 60, kRings = 16;
+  const auto at = [](int ring, int i) {
+    const double theta = std::numbers::pi * ring / kRings, phi = 2 * std::numbers::pi * (i % kRound) / kRound,
+                 r = 6500 + 150 * std::sin(7 * theta + 1) * std::cos(5 * phi);
+    return Int3(std::lround(r * std::sin(theta) * std::cos(phi)),
+                std::lround(r * std::sin(theta) * std::sin(phi)), std::lround(r * std::cos(theta)));
+  };
+  equivalence::Triangles out;
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int i = 0; i < kRound; ++i) {
+      if (ring > 0) out.push_back({at(ring, i), at(ring + 1, i), at(ring, i + 1)});
+      if (ring + 1 < kRings) out.push_back({at(ring, i + 1), at(ring + 1, i), at(ring + 1, i + 1)});
+    }
+  return out;
+}
+
 /// As native_test's: more than are listed.
 TEST_F(ToolSamples, AreWorkedOutInAFrameWhereThereAreTooMany) {
-  const auto scene = equivalence::lattice_scene(equivalence::box_of(Int3(0, 0, -3000), Int3(2000, 1500, 0)),
-                                                equivalence::box_of(Int3(0), Int3(12000, 12000, 40)), 504, 8);
+  const auto scene = equivalence::lattice_scene(equivalence::box_of(Int3(0, 0, -900), Int3(700, 500, 0)),
+                                                bumpy_ball(), 504, 8);
   ASSERT_TRUE(scene) << scene.error().sentence;
   const auto prepared = prepare_scene(device(), *scene, Plan{}, {});
   ASSERT_TRUE(prepared) << prepared.error().sentence;
@@ -93,16 +114,22 @@ TEST_F(ToolSamples, AreWorkedOutInAFrameWhereThereAreTooMany) {
   const auto ref = make_ref_backend();
   ASSERT_TRUE((*gpu)->prepare(*scene, Plan{}, {}));
   ASSERT_TRUE(ref->prepare(*scene, Plan{}, {}));
-  const LatticePose pose =
-      *to_lattice(Pose{Vec3(-5003, -4007, -11), glm::angleAxis(0.001, Vec3(0.6, 0.8, 0))}, *scene);
-  Contacts found, expected;
-  ASSERT_TRUE((*gpu)->query(pose, nullptr, found));
-  ASSERT_TRUE(ref->query(pose, nullptr, expected));
-  std::uint32_t pushes = 0;
-  for (const FieldBin& bin : expected.field.bins) pushes += bin.samples;
-  EXPECT_GT(pushes, 1000u);
-  EXPECT_FALSE(found.truncated);
-  EXPECT_EQ(first_difference(found, expected), "");
+  // The block is cut by the ball's surface, on six sides of it.
+  const Vec3 ways[] = {{0, 0, 1},          {0, 0.28, 0.96},     {0.6, 0, -0.8},
+                       {-0.64, 0.6, 0.48}, {0.36, -0.8, -0.48}, {1, 0, 0}};
+  for (const Vec3& way : ways) {
+    SCOPED_TRACE(::testing::Message() << way.x << ' ' << way.y << ' ' << way.z);
+    const LatticePose pose = *to_lattice(
+        Pose{Vec3(350, 250, -450) - 6450.0 * way, glm::angleAxis(0.001, Vec3(0.6, 0.8, 0))}, *scene);
+    Contacts found, expected;
+    ASSERT_TRUE((*gpu)->query(pose, nullptr, found));
+    ASSERT_TRUE(ref->query(pose, nullptr, expected));
+    std::uint32_t pushes = 0;
+    for (const FieldBin& bin : expected.field.bins) pushes += bin.samples;
+    EXPECT_GT(pushes, 1000u);
+    EXPECT_FALSE(found.truncated);
+    EXPECT_EQ(first_difference(found, expected), "");
+  }
 }
 
 }  // namespace
