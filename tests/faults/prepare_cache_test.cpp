@@ -57,7 +57,6 @@ void expect_same(CollisionBackend& a, CollisionBackend& b, const FaultScene& sce
     EXPECT_EQ(first_difference(*one, *other), "");
   }
   EXPECT_EQ(a.has_internal_voxels(), b.has_internal_voxels());
-  EXPECT_EQ(a.memory_bytes(), b.memory_bytes());
   Contacts from_a, from_b;
   for (const double lift : {0.0, 0.0004, -0.0007, 0.5}) {
     LatticePose pose = scene.pose;
@@ -80,6 +79,7 @@ TEST_P(PrepareCache, ASecondStartPreparesNothingAndAnswersTheSame) {
       const auto first = start(*scene, plan, worked_first), second = start(*scene, plan, worked_second);
       EXPECT_TRUE(worked_first);
       EXPECT_FALSE(worked_second);
+      EXPECT_EQ(first->memory_bytes(), second->memory_bytes());
       expect_same(*first, *second, *scene, profile == Profile::kRefined);
       Contacts answer;
       ASSERT_TRUE(second->query(scene->pose, nullptr, answer));
@@ -94,6 +94,7 @@ TEST_P(PrepareCache, ADamagedEntryIsMadeAnewAndSaid) {
   const auto scene = ball_on_edge();
   bool worked = false;
   const auto first = start(*scene, {}, worked);
+  const std::uint64_t kept = first->memory_bytes();  // frames take more
   const fs::path path = files().at(0);
   const auto size = fs::file_size(path);
   for (const bool cut : {false, true}) {
@@ -107,6 +108,7 @@ TEST_P(PrepareCache, ADamagedEntryIsMadeAnewAndSaid) {
     const auto again = start(*scene, {}, worked);
     EXPECT_TRUE(worked);
     EXPECT_THAT(cache->take_notes(), testing::ElementsAre(testing::HasSubstr("damaged")));
+    EXPECT_EQ(again->memory_bytes(), kept);
     expect_same(*first, *again, *scene, true);
     EXPECT_EQ(fs::file_size(path), size);
     const auto known = start(*scene, {}, worked);
