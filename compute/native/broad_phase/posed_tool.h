@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// The tool's triangles at a pose, each moved when it is first asked for. One thread; only the constructor
-/// allocates.
+/// The tool's triangles at a pose, each moved when it is first asked for. A triangle's corners() are one
+/// thread's at a time, different ones' any number's; only the constructor allocates.
 class PosedTool {
  public:
   explicit PosedTool(const LatticeMesh& tool)

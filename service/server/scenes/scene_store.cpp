@@ -27,7 +27,8 @@ std::uint64_t bytes_of(const LatticeMesh& mesh) {
   return bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.flags) +
          bytes_of(mesh.unit_normal_q30) + bytes_of(mesh.sample_weight_q30) + bytes_of(mesh.sample_axis) +
          bytes_of(mesh.neighbour_begin) + bytes_of(mesh.neighbours) + bytes_of(mesh.patch) +
-         bytes_of(mesh.field_weight_q30) + bytes_of(mesh.extra_samples);
+         bytes_of(mesh.field_weight_q30) + bytes_of(mesh.extra_samples) + bytes_of(mesh.levels_of) +
+         bytes_of(mesh.side_levels) + bytes_of(mesh.grid_samples);
 }
 
 /// What a prepared scene keeps: back end and integers.
@@ -106,6 +107,7 @@ struct SceneStore::Entry {
   std::vector<std::string> warnings;
   std::shared_ptr<HostedScene> prepared;
   std::uint64_t bytes = 0;
+  std::uint64_t engine_bytes = 0;  ///< of these, its engine's before anybody asked it
   std::shared_ptr<SceneLease::Count> count = std::make_shared<SceneLease::Count>();
   bool removed = false;
 };
@@ -451,14 +453,16 @@ Aside SceneStore::aside(const SceneLease& lease) {
   HostedScene& scene = *lease;
   Aside aside{std::unique_lock(scene.aside_mutex), scene.aside.get()};
   if (aside.backend || scene.aside_failed) return aside;
-  const std::uint64_t bytes = scene.backend->memory_bytes();
+  std::uint64_t bytes = 0;  // as the first one's, which others may be asking now
   std::shared_ptr<Entry> entry;
   std::vector<std::shared_ptr<HostedScene>> evicted;  // given back when nobody is locked out
   {
     const std::lock_guard lock(mutex_);
     for (const auto& known : entries_)
       if (known->prepared.get() == &scene) entry = known;
-    if (!entry || !make_memory_locked(bytes, evicted)) return aside;
+    if (!entry) return aside;
+    bytes = entry->engine_bytes;
+    if (!make_memory_locked(bytes, evicted)) return aside;
     entry->bytes += bytes;  // its place is kept while it is made
   }
   evicted.clear();
@@ -507,6 +511,7 @@ void SceneStore::finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<Hos
       entry->step.clear();
       entry->progress = 1;
       entry->bytes = bytes;
+      entry->engine_bytes = prepared->backend->memory_bytes();
       entry->facts = facts_of(*prepared, bytes);
       entry->warnings = prepared->loaded.scene.warnings;
       entry->prepared = std::move(prepared);
