@@ -192,7 +192,7 @@ void BoxTree::meeting_pairs(const BoxTree& a, const BoxTree& b,
   std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }
 
-/// Embree keeps about 64 bytes a primitive in its nodes and leaves (estimated; it gives no figure a scene).
+/// Of Embree what it has said, while the hierarchy was built, that it took and gave back.
 std::uint64_t BoxTree::memory_bytes() const {
   return embree_->boxes.capacity() * sizeof(Box) +
          static_cast<std::uint64_t>(std::max(embree_->bytes, std::int64_t{0}));

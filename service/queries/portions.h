@@ -5,9 +5,9 @@
 
 namespace palpate {
 
-/// Goes through many poses a portion at a time, so that whoever wants to stop is heard within about a second,
-/// whatever an engine takes for a pose: 16 to begin with, 16 times as many after a portion that took less
-/// than a sixteenth of a second, a sixteenth after one that took more than one (chosen).
+/// Goes through many poses a portion at a time, so that whoever wants to stop is heard after about a second,
+/// or after 16 poses where an engine is slow: 16 to begin with, 16 times as many after a portion that took
+/// less than a sixteenth of a second, a sixteenth after one that took more than one (chosen).
 class Portions {
  public:
   using Clock = std::chrono::steady_clock;

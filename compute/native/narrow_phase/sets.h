@@ -44,7 +44,7 @@ class ContactSets {
                           std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
   /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked
-  /// there (kStatic…) and numbered. `helper` may be null.
+  /// there (kStatic…) on the way, and nothing is afterwards. `helper` may be null.
   void decide(const PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
               FoundSets& out);
 
