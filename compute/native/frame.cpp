@@ -44,6 +44,7 @@ Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan
       flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
       touch_(kUsualItems),
       candidate_pairs_(kUsualItems),
+      swallowed_(kUsualItems),
       chunks_(kUsualItems),
       inside_(kUsualItems),
       open_(kUsualItems) {
@@ -68,6 +69,9 @@ bool Frame::enlarge(std::uint32_t list) {
     case kCandidatePairs:
       twice(candidate_pairs_);
       return true;
+    case kCandidateSwallowed:
+      twice(swallowed_);
+      return true;
     case kCandidateChunks:
       twice(chunks_);
       return true;
@@ -87,12 +91,13 @@ bool Frame::find(Candidates& near) {
   do {
     near = Candidates{.touch = {touch_},
                       .pairs = {candidate_pairs_},
+                      .swallowed = {swallowed_},
                       .samples = {chunks_},
                       .inside = {inside_},
                       .open = {open_}};
     broad_phase_.find(posed_, helper(), near);
   } while (near.full != gpu::kNone && enlarge(near.full));
-  return near.touch.count + near.samples.count + near.inside.count + near.open.count !=
+  return near.touch.count + near.swallowed.count + near.samples.count + near.inside.count + near.open.count !=
          0;  // every pair lies in a voxel that may be touched
 }
 
@@ -135,8 +140,8 @@ std::span<const gpu::ContactPair> Frame::pairs() const {
 
 std::uint64_t Frame::memory_bytes() const {
   return sizeof *this + bytes_of(order_) + runs_.bytes() + posed_.bytes() + broad_phase_.bytes() +
-         contact_->bytes() + bytes_of(touch_) + bytes_of(candidate_pairs_) + bytes_of(chunks_) +
-         bytes_of(inside_) + bytes_of(open_);
+         contact_->bytes() + bytes_of(touch_) + bytes_of(candidate_pairs_) + bytes_of(swallowed_) +
+         bytes_of(chunks_) + bytes_of(inside_) + bytes_of(open_);
 }
 
 }  // namespace palpate::native

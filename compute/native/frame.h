@@ -60,6 +60,7 @@ class Frame final : public PoseQuery {
   // Room for what the search finds.
   std::vector<TouchCandidate> touch_;
   std::vector<PairCandidate> candidate_pairs_;
+  std::vector<std::uint32_t> swallowed_;
   std::vector<gpu::SampleChunk> chunks_;
   std::vector<gpu::FrameSample> inside_, open_;
 };

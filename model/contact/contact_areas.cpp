@@ -59,22 +59,6 @@ class Places {
   std::vector<Entry> entries_;
 };
 
-void add(WideSum& to, const WideSum& from) {
-  to.low += from.low;
-  to.high += from.high;
-}
-
-void add(CarrierSums& to, const CarrierSums& from) {
-  to.samples += from.samples;
-  to.max_depth = std::max(to.max_depth, from.max_depth);
-  to.weight_sum += from.weight_sum;
-  to.depth_sum += from.depth_sum;
-  for (std::size_t k = 0; k < 3; ++k) {
-    add(to.push[k], from.push[k]);
-    add(to.moment[k], from.moment[k]);
-  }
-}
-
 /// Where an area lies.
 struct Bounds {
   Int3 low{INT32_MAX}, high{INT32_MIN};
@@ -175,7 +159,7 @@ void gather_areas(const SceneGeometry& geometry, const LatticePose& pose, Contac
     area.static_ids.push_back(carrier.id);
     area.zones[zone_at[zone]].push_back(carrier.id);
     if ((mesh.flags[carrier.id] & kTriangleSheet) != 0) area.flags |= kFlagSheet;
-    add(area.field, carrier);
+    area.field += carrier;
     for (int k = 0; k < 3; ++k) bounds[area_at[first]].include(mesh.corner(carrier.id, k));
   }
   for (ContactArea& area : contacts.areas) {

@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "model/lattice/vector.h"
@@ -11,6 +13,11 @@ struct WideSum {
   std::int64_t low = 0;   ///< sum of the terms' low 32 bits
   std::int64_t high = 0;  ///< sum of the terms >> 32 (arithmetic)
   bool operator==(const WideSum&) const = default;
+  WideSum& operator+=(const WideSum& more) {
+    low += more.low;
+    high += more.high;
+    return *this;
+  }
 };
 
 /// By how many bits a lever is shortened where only its rough size matters: what is left of the tool's radius
@@ -56,6 +63,18 @@ struct CarrierSums {
   std::array<WideSum, 3> push{};    ///< Σ P n
   std::array<WideSum, 3> moment{};  ///< Σ (P >> 10) r
   bool operator==(const CarrierSums&) const = default;
+  /// The id stays.
+  CarrierSums& operator+=(const CarrierSums& more) {
+    samples += more.samples;
+    max_depth = std::max(max_depth, more.max_depth);
+    weight_sum += more.weight_sum;
+    depth_sum += more.depth_sum;
+    for (std::size_t k = 0; k < 3; ++k) {
+      push[k] += more.push[k];
+      moment[k] += more.moment[k];
+    }
+    return *this;
+  }
 };
 
 }  // namespace palpate

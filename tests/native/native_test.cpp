@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -94,6 +95,45 @@ TEST(Native, AnswersOfAToolWithMoreSamplesThanItKeeps) {
   for (const FieldBin& bin : found.field.bins) pushes += bin.samples;
   EXPECT_GT(pushes, 1000u);
   EXPECT_EQ(first_difference(found, expected), "");
+}
+
+/// What of a tool lies deep inside is taken by whole runs of triangles, but for needles, which at some poses
+/// are collinear, when they touch nothing.
+TEST(Native, AnswersOfAToolDeepInside) {
+  equivalence::Triangles tool;
+  for (int i = 0; i < 64; ++i) {
+    const Int3 low = 2500 * (Int3(i & 3, i >> 2 & 3, i >> 4) - 2);
+    append(tool, equivalence::box_of(low, low + 400 + 10 * i));
+    if (i % 8 != 0) continue;
+    const Int3 a = low + 1000, b = a + Int3(100, 0, 0), c = a + Int3(200, 1, 0);
+    append(tool, {{a, b, c}, {a, c, b}});
+  }
+  const auto scene =
+      equivalence::lattice_scene(equivalence::box_of(Int3(-20000), Int3(20000)), tool, 504, 126);
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  const auto native = make_native_backend(), ref = make_ref_backend();
+  ASSERT_TRUE(native->prepare(*scene, Plan{}, {}));
+  ASSERT_TRUE(ref->prepare(*scene, Plan{}, {}));
+  std::size_t wholly = 0, collinear = 0, partly = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 axis = glm::normalize(Vec3(std::sin(i), std::cos(2 * i), std::sin(3 * i)));
+    const LatticePose pose =
+        at(*scene, Vec3(100 * i, (i % 4 == 0 ? 440 : 11) * i, -9 * i), glm::angleAxis(0.37 * i, axis));
+    Contacts found, expected;
+    ASSERT_TRUE(native->query(pose, nullptr, found));
+    ASSERT_TRUE(ref->query(pose, nullptr, expected));
+    EXPECT_EQ(first_difference(found, expected), "") << i;
+    if (!expected.cmt.empty() || !expected.bmt.empty()) {
+      ++partly;
+      continue;
+    }
+    EXPECT_LE(expected.imt.size(), tool.size());
+    (expected.imt.size() == tool.size() ? wholly : collinear) += 1;
+    EXPECT_LT(found.times.front().looks, tool.size() / 2) << found.times.front().stage;
+  }
+  EXPECT_GT(wholly, 0u);
+  EXPECT_GT(collinear, 0u);
+  EXPECT_GT(partly, 0u);
 }
 
 /// A voxel that lists more triangles than its samples' places can tell apart: none is listed then, and what

@@ -22,6 +22,25 @@ constexpr double kMargin = gpu::kCloseSteps + 2.0;
 
 static_assert(gpu::kRunSize == kEight);
 
+/// Whether a triangle stays one at every pose. An edge that is turned is off by less than a step an axis,
+/// and by 2^-28 of itself: so the product of two is off by less than √3 of their lengths together, and 3,
+/// and far less than a part of itself.
+bool is_stout(const LatticeMesh& mesh, std::uint32_t id) {
+  double edge[2][3], size[2] = {};
+  for (std::size_t e = 0; e < 2; ++e)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      edge[e][k] = static_cast<double>(mesh.corner(id, e == 0 ? 1 : 2)[axis]) - mesh.corner(id, 0)[axis];
+      size[e] += std::abs(edge[e][k]);
+    }
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+    largest = std::max(largest, std::abs(edge[0][l] * edge[1][m] - edge[0][m] * edge[1][l]));
+  }
+  return largest > 4 * (size[0] + size[1]) + 8;
+}
+
 }  // namespace
 
 /// A pose in doubles. Its products are within 2^29 and off by less than 2^-20.
@@ -64,10 +83,12 @@ BroadPhase BroadPhase::make(const SceneGeometry& geometry, const SceneTables& sc
 
 void BroadPhase::make_runs(const LatticeMesh& tool) {
   runs_.resize((order_.size() + kEight - 1) / kEight);
+  stout_.assign(runs_.size(), 1);
   for (EightTriangles& run : runs_)
     for (auto& coordinate : run) coordinate.fill(kNowhere);
   Int3 low(INT32_MAX), high(INT32_MIN);
   for (std::size_t place = 0; place < order_.size(); ++place) {
+    if (tool.collapsed(order_[place]) || !is_stout(tool, order_[place])) stout_[place / kEight] = 0;
     if (tool.collapsed(order_[place])) continue;
     for (int corner = 0; corner < 3; ++corner) {
       const Int3 p = tool.corner(order_[place], corner);
@@ -143,8 +164,9 @@ void BroadPhase::share() {
 }
 
 std::uint64_t BroadPhase::bytes() const {
-  std::uint64_t sum = bytes_of(second_touch_) + bytes_of(second_pairs_) + samples_.bytes() + bytes_of(runs_) +
-                      bytes_of(occupied_) + cubes_.bytes();
+  std::uint64_t sum = bytes_of(second_touch_) + bytes_of(second_pairs_) + bytes_of(second_swallowed_) +
+                      samples_.bytes() + bytes_of(runs_) + bytes_of(stout_) + bytes_of(occupied_) +
+                      cubes_.bytes();
   for (const CandidatePairs::Seen& seen : seen_) sum += seen.bytes();
   for (const BrickBits& level : occupied_) sum += level.bytes();
   return sum;
@@ -159,21 +181,39 @@ unsigned BroadPhase::occupied(const EightRanges& voxels) const {
   return out;
 }
 
+/// Whether all of the voxels lie in bricks that are V_int. What reaches out of the grid has been clipped to
+/// bricks at its border, which never are.
+bool BroadPhase::all_internal(const BrickBits::Range& voxels) const {
+  const BrickBits& occupied = occupied_.front();
+  for (std::int32_t z = voxels.first[2] >> 3; z <= voxels.last[2] >> 3; ++z)
+    for (std::int32_t y = voxels.first[1] >> 3; y <= voxels.last[1] >> 3; ++y)
+      for (std::int32_t x = voxels.first[0] >> 3; x <= voxels.last[0] >> 3; ++x)
+        if (occupied.slot(occupied.number(x, y, z)) != gpu::kBrickInternal) return false;
+  return true;
+}
+
 /// From some nodes of the tool's tree to runs of triangles.
 void BroadPhase::descend(const Search& search, const RunTree::Group& from, CandidatePairs::Seen& seen,
                          Candidates& lists) const {
   on_this_processor([&] {
     tree_->descend(
         search.voxels, from, [&](const EightRanges& voxels) { return occupied(voxels); },
-        [&](std::uint32_t run) {
-          take_run(search, run, seen, lists);
-          return lists.full == gpu::kNone;
+        [&](std::uint32_t run) { return take_run(search, run, seen, lists); },
+        [&](const BrickBits::Range& voxels) { return all_internal(voxels); },
+        [&](std::size_t first, std::size_t end) {
+          for (std::size_t run = first; run < end; ++run)
+            if (stout_[run] != 0
+                    ? !lists.push(lists.swallowed, kCandidateSwallowed, static_cast<std::uint32_t>(run))
+                    : !take_run(search, run, seen, lists))
+              return false;
+          seen.looks += end - first;
+          return true;
         });
   });
 }
 
-/// The triangles of a run, each by the box of its corners.
-void BroadPhase::take_run(const Search& search, std::size_t run, CandidatePairs::Seen& seen,
+/// The triangles of a run, each by the box of its corners. False: a list had no room.
+bool BroadPhase::take_run(const Search& search, std::size_t run, CandidatePairs::Seen& seen,
                           Candidates& lists) const {
   const BrickBits& occupied = occupied_.front();
   EightRanges voxels;
@@ -191,8 +231,9 @@ void BroadPhase::take_run(const Search& search, std::size_t run, CandidatePairs:
       begun = true;
       return !pairs_.take(triangle, brick, slot, seen, lists);
     });
-    if (lists.full != gpu::kNone) return;
+    if (lists.full != gpu::kNone) return false;
   }
+  return true;
 }
 
 namespace {
@@ -217,9 +258,15 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
   if (second_touch_.size() != lists.touch.room.size())
     second_touch_.resize(lists.touch.room.size());  // at first, and when the lists have been enlarged
   if (second_pairs_.size() != lists.pairs.room.size()) second_pairs_.resize(lists.pairs.room.size());
+  if (second_swallowed_.size() != lists.swallowed.room.size())
+    second_swallowed_.resize(lists.swallowed.room.size());
   alignas(kOwnLines) Candidates samples = lists;
-  alignas(kOwnLines) Candidates second{
-      .touch = {second_touch_}, .pairs = {second_pairs_}, .samples = {}, .inside = {}, .open = {}};
+  alignas(kOwnLines) Candidates second{.touch = {second_touch_},
+                                       .pairs = {second_pairs_},
+                                       .swallowed = {second_swallowed_},
+                                       .samples = {},
+                                       .inside = {},
+                                       .open = {}};
   const std::uint32_t ahead = samples_of != nullptr ? 1 : 0;
   share_parts(&helper, static_cast<std::uint32_t>(count) + ahead, [&](std::uint32_t part, int lane) {
     if (part < ahead)
@@ -231,6 +278,8 @@ void BroadPhase::find_beside(const Search& search, const Reach* samples_of, Fram
   if (lists.full == gpu::kNone) lists.full = second.full;
   if (lists.full == gpu::kNone && !append(lists.touch, second.touch)) lists.full = kCandidateTouch;
   if (lists.full == gpu::kNone && !append(lists.pairs, second.pairs)) lists.full = kCandidatePairs;
+  if (lists.full == gpu::kNone && !append(lists.swallowed, second.swallowed))
+    lists.full = kCandidateSwallowed;
   if (ahead == 0) return;
   lists.samples = samples.samples;
   lists.inside = samples.inside;
@@ -286,7 +335,7 @@ bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, Candidates& li
   else
     descend(search, tree_->root(), seen_[0], lists);
   if (lists.full != gpu::kNone) return false;
-  if (!has_inside_) return lists.touch.count != 0;
+  if (!has_inside_) return lists.touch.count + lists.swallowed.count != 0;
   bool meet = always_samples_ || lists.pairs.count != 0;
   // A whole connected part of the mock-up may lie inside the tool.
   for (std::size_t i = 0; i < parts_.size() && !meet; ++i) {

@@ -39,8 +39,9 @@ class BroadPhase {
   void share();
 
   /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may
-  /// come, pairs that may come within kCloseSteps, and, if the bodies may meet, samples that may lie inside
-  /// the tool. True: they may. The pose must not be beyond the lattice. `helper` may be null.
+  /// come, but for runs of them that lie deep inside, pairs that may come within kCloseSteps, and, if the
+  /// bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be beyond the
+  /// lattice. `helper` may be null.
   bool find(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   /// Voxels, list entries and samples that the last find() looked at.
   std::uint64_t looks() const { return looks_; }
@@ -63,10 +64,11 @@ class BroadPhase {
   bool meets(BrickBits::Range voxels) const;
   bool search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   unsigned occupied(const EightRanges& voxels) const;
+  bool all_internal(const BrickBits::Range& voxels) const;
   void descend(const Search& search, const RunTree::Group& from, CandidatePairs::Seen& seen,
                Candidates& lists) const;
   void find_beside(const Search& search, const Reach* samples_of, FrameHelper& helper, Candidates& lists);
-  void take_run(const Search& search, std::size_t run, CandidatePairs::Seen& seen, Candidates& lists) const;
+  bool take_run(const Search& search, std::size_t run, CandidatePairs::Seen& seen, Candidates& lists) const;
   void find_samples(const LatticePose& pose, const Reach& whole, Candidates& lists) const;
 
   std::span<const std::uint32_t> order_;
@@ -76,6 +78,7 @@ class BroadPhase {
   std::uint64_t looks_ = 0;
   std::vector<TouchCandidate> second_touch_;  ///< what the helper finds, as large as the lists
   std::vector<PairCandidate> second_pairs_;
+  std::vector<std::uint32_t> second_swallowed_;
   CandidateSamples samples_;
   double inside_margin_ = 0;     ///< steps
   bool has_inside_ = false;      ///< samples are asked whether they lie inside the tool
@@ -84,6 +87,7 @@ class BroadPhase {
   Box whole_{};
   const RunTree* tree_ = nullptr;
   std::vector<EightTriangles> runs_;
+  std::vector<std::uint8_t> stout_;  ///< by run: none of its triangles is collinear at any pose
   std::int32_t tool_radius_ = 0;
   gpu::GridConstants grid_{};
   double per_voxel_ = 0;  ///< voxels a step

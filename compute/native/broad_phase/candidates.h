@@ -23,8 +23,8 @@ struct PairCandidate {
 };
 
 /// The lists of Candidates, by number.
-inline constexpr std::uint32_t kCandidateTouch = 0, kCandidatePairs = 1, kCandidateChunks = 2,
-                               kCandidateInside = 3, kCandidateOpen = 4;
+inline constexpr std::uint32_t kCandidateTouch = 0, kCandidatePairs = 1, kCandidateSwallowed = 2,
+                               kCandidateChunks = 3, kCandidateInside = 4, kCandidateOpen = 5;
 
 /// A list that the search fills for one frame, in memory of the engine's.
 template <class T>
@@ -44,6 +44,7 @@ struct WorkList {
 struct Candidates {
   WorkList<TouchCandidate> touch;
   WorkList<PairCandidate> pairs;
+  WorkList<std::uint32_t> swallowed;   ///< runs of tool triangles that lie in V_int voxels alone
   WorkList<gpu::SampleChunk> samples;  ///< where samples are not listed
   WorkList<gpu::FrameSample> inside,
       open;  ///< where they are: what the tool's fine partition has inside, and what it leaves open

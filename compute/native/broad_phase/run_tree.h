@@ -57,9 +57,12 @@ class RunTree {
 
   /// Calls take(run) for every run below `from` that which(ranges) names with each node above it, until
   /// take() returns false. which() tells, a bit each, which of eight nodes it wants, by the voxels that their
-  /// turned boxes meet (voxels_of()); what meets none must not be among them.
-  template <class Which, class Take>
-  void descend(const VoxelTurn& turn, const Group& from, Which&& which, Take&& take) const {
+  /// turned boxes meet (voxels_of()); what meets none must not be among them. Below a node of whose voxels
+  /// whole(range) holds it is not asked again: take_whole(first, end) has all its runs, and ends as take()
+  /// does.
+  template <class Which, class Take, class Whole, class TakeWhole>
+  void descend(const VoxelTurn& turn, const Group& from, Which&& which, Take&& take, Whole&& whole,
+               TakeWhole&& take_whole) const {
     std::array<Group, kEight * 12>
         open;  // 8^12 runs are more than a mesh can have; a level leaves at most eight groups waiting
     std::size_t count = 0;
@@ -69,9 +72,13 @@ class RunTree {
       const Group next = open[--count];
       voxels_of(turn, levels_[next.level][next.number], ranges);
       for (unsigned left = which(ranges); left != 0; left &= left - 1) {
-        const std::uint32_t node = static_cast<std::uint32_t>(kEight) * next.number +
-                                   static_cast<std::uint32_t>(std::countr_zero(left));
-        if (next.level != 0)
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+        const std::uint32_t node = static_cast<std::uint32_t>(kEight) * next.number + i;
+        if (whole(ranges.range(i))) {
+          const std::size_t runs = std::size_t{1} << 3 * next.level,
+                            all = (order_.size() + kEight - 1) / kEight;
+          if (!take_whole(node * runs, std::min((node + 1) * runs, all))) return;
+        } else if (next.level != 0)
           open[count++] = {next.level - 1, node};
         else if (!take(node))
           return;

@@ -125,23 +125,36 @@ std::array<float, kLevels + 1> turned_boxes_pay_from(const TriangleTree& tree) {
 }  // namespace
 
 struct alignas(kOwnLines) DepthSearch::Tables {
-  static constexpr std::uint32_t kRuns = 512;    // runs of triangles (chosen: 600 KiB)
-  static constexpr std::uint32_t kKnown = 1024;  // triangles (chosen: 200 KiB)
-  static constexpr std::uint32_t kCubes = 512;   // cubes (chosen: 260 KiB)
+  // Chosen, at most so many: of a contact of 1,024 samples of either body few displace each other.
+  static constexpr std::size_t kMostRuns = 2048;   // of triangles (2.3 MiB)
+  static constexpr std::size_t kMostKnown = 4096;  // triangles (0.8 MiB)
+  static constexpr std::size_t kMostCubes = 2048;  // cubes (1.0 MiB)
   const LatticeMesh& mesh;
   const TriangleTree& tree;
   std::array<float, kLevels + 1> turned_from = turned_boxes_pay_from(tree);
-  std::vector<Run> runs = std::vector<Run>(kRuns);  ///< by run, where a newer one takes an older one's place
-  std::vector<Known> known = std::vector<Known>(kKnown);  ///< by triangle, likewise
-  int cube_shift;                                         ///< 2^it: a cube's edge
-  std::vector<Cube> cubes = std::vector<Cube>(kCubes);    ///< by place, likewise
+  std::vector<Run> runs;     ///< by run, where a newer one takes an older one's place
+  std::vector<Known> known;  ///< by triangle, likewise
+  std::vector<Cube> cubes;   ///< by place, likewise
+  int cube_shift;            ///< 2^it: a cube's edge
   std::uint64_t looks = 0;
 
   Tables(const LatticeMesh& of_mesh, const TriangleTree& of_tree, std::int32_t spacing)
       : mesh(of_mesh),
         tree(of_tree),
+        runs(table_size(of_tree.order.size() / kEight + 1, kMostRuns)),
+        known(table_size(of_tree.order.size(), kMostKnown)),
+        cubes(table_size(of_tree.order.size(), kMostCubes)),
         cube_shift(std::min(
             static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::max(spacing, 1)))) + 2, 30)) {}
+  /// A power of two: no more than there are things to put into the table needs.
+  static std::size_t table_size(std::size_t things, std::size_t most) {
+    return std::bit_ceil(std::clamp<std::size_t>(things, 1, most));
+  }
+  /// Where in a table something is, or would be.
+  template <class T>
+  static T& place_in(std::vector<T>& table, std::uint32_t number) {
+    return table[number & (table.size() - 1)];
+  }
   const Run& run(std::uint32_t number);
   Known& know(std::uint32_t triangle);
   std::int64_t height_above(const Int3& point, std::uint32_t triangle) const;
@@ -154,11 +167,11 @@ Cube& DepthSearch::Tables::cube_at(const Int3& place) {
   const std::uint32_t mixed = static_cast<std::uint32_t>(place.x) * 73856093U ^
                               static_cast<std::uint32_t>(place.y) * 19349663U ^
                               static_cast<std::uint32_t>(place.z) * 83492791U;
-  return cubes[mixed % kCubes];
+  return place_in(cubes, mixed);
 }
 
 const Run& DepthSearch::Tables::run(std::uint32_t number) {
-  Run& run = runs[number % kRuns];
+  Run& run = place_in(runs, number);
   if (run.number == number) return run;
   run.number = number;
   const std::size_t first = kEight * number, count = std::min(kEight, tree.order.size() - first);
@@ -195,7 +208,7 @@ const Run& DepthSearch::Tables::run(std::uint32_t number) {
 }
 
 Known& DepthSearch::Tables::know(std::uint32_t id) {
-  Known& entry = known[id % kKnown];
+  Known& entry = place_in(known, id);
   if (entry.id != id) {
     entry.id = id;
     entry.edges = 0;

@@ -68,17 +68,12 @@ void add_term(WideSum& sum, std::int64_t term) {
   sum.high += term >> 32;
 }
 
-void add_sum(WideSum& sum, const WideSum& more) {
-  sum.low += more.low;
-  sum.high += more.high;
-}
-
 void add_bin(FieldBin& bin, const FieldBin& more) {
   bin.samples += more.samples;
   bin.give += more.give;
   for (std::size_t k = 0; k < 3; ++k) {
-    add_sum(bin.push[k], more.push[k]);
-    add_sum(bin.turn[k], more.turn[k]);
+    bin.push[k] += more.push[k];
+    bin.turn[k] += more.turn[k];
     bin.give_at[k] += more.give_at[k];
   }
   for (std::size_t k = 0; k < 6; ++k) bin.give_spread[k] += more.give_spread[k];
@@ -144,7 +139,7 @@ void PressureField::Extras::for_each(std::uint32_t triangle, std::uint32_t level
 
 PressureField PressureField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
                                   const InsideSearch& in_mockup, const TriangleTree& tool,
-                                  bool tool_has_inside) {
+                                  std::span<const std::uint32_t> order, bool tool_has_inside) {
   PressureField out;
   out.geometry_ = &geometry;
   for (Lane& lane : out.lanes_) {
@@ -156,11 +151,12 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
   out.mockup_extras_ = Extras(geometry.mockup);
   out.tool_extras_ = Extras(geometry.tool);
   out.lever_shift_ = lever_shift(geometry.tool_radius);
-  out.list_tool_samples();
+  out.list_tool_samples(order);
   return out;
 }
 
-void PressureField::list_tool_samples() {
+/// Triangle by triangle as C_m has them.
+void PressureField::list_tool_samples(std::span<const std::uint32_t> order) {
   const LatticeMesh& tool = geometry_->tool;
   const double density = static_cast<double>(geometry_->sample_spacing) * geometry_->sample_spacing;
   if (geometry_->tool_surface.area / density + static_cast<double>(tool.triangles.size()) >
@@ -168,7 +164,7 @@ void PressureField::list_tool_samples() {
     return;
   own_.resize(tool.triangles.size());
   std::vector<std::pair<int, Int3>> samples;  // level and point, of a triangle
-  for (std::uint32_t id = 0; id < own_.size(); ++id) {
+  for (const std::uint32_t id : order) {
     if (tool.field_weight_q30[id] == 0) continue;
     samples.clear();
     work_out_tool_samples(id, [&](const Int3& p, int level) { samples.emplace_back(level, p); });
@@ -496,7 +492,7 @@ std::uint64_t PressureField::bytes() const {
                       bytes_of(tool_counts_);
   for (const Lane& lane : lanes_)
     sum += lane.mockup_depth.bytes() + lane.tool_depth.bytes() + lane.in_mockup.bytes() +
-           bytes_of(lane.touched) + bytes_of(lane.asked) + bytes_of(lane.extras);
+           bytes_of(lane.carriers) + bytes_of(lane.touched) + bytes_of(lane.asked) + bytes_of(lane.extras);
   return sum;
 }
 
@@ -515,10 +511,12 @@ void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundS
     for (const StaticResult& result : found.statics)
       if ((result.state & (kStaticHit | kStaticSampled)) != 0) out.carriers.emplace_back().id = result.id;
 
-  // Whole numbers are summed, so it is the same who sums which. Carriers are written by whoever has the
-  // mock-up's samples, so where they are wanted these are one part.
+  std::vector<CarrierSums>& of_helper = lanes_[1].carriers;
+  of_helper.clear();
+  if (helper != nullptr) of_helper = out.carriers;
+
+  // Whole numbers are summed, so it is the same who sums which.
   const auto parts_of = [&](std::size_t count) {
-    if (wanted.carriers) return std::size_t{1};
     const std::size_t size = kPart << mockup_level_.whole;
     return std::min((count + size - 1) / size, kMostOfABody);
   };
@@ -534,11 +532,12 @@ void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundS
   share_parts(helper, static_cast<std::uint32_t>(of_samples + of_statics + tool_parts_.size()),
               [&](std::uint32_t part, int number) {
                 Lane& lane = lanes_[static_cast<std::size_t>(number)];
+                const std::span<CarrierSums> carriers = number == 0 ? out.carriers : of_helper;
                 if (part < of_samples)
                   sum_samples(pose, piece(std::span<const FrameSample>(found.samples), part, of_samples),
-                              out.carriers, lane);
+                              carriers, lane);
                 else if (part < of_samples + of_statics)
-                  sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), out.carriers, number);
+                  sum_extras(pose, sets, piece(statics, part - of_samples, of_statics), carriers, number);
                 else
                   sum_tool(pose, found.mobiles, part - of_samples - of_statics, lane);
               });
@@ -548,6 +547,7 @@ void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundS
   out.field = first.field;
   for (std::size_t i = 0; i < kFieldBins; ++i) add_bin(out.field.bins[i], second.field.bins[i]);
   add_deepest(out.field, second.field.max_depth, second.field.deepest_static, second.field.deepest_mobile);
+  for (std::size_t i = 0; i < of_helper.size(); ++i) out.carriers[i] += of_helper[i];
   out.flags |= first.flags | second.flags;
   out.ignored_touched = first.touched;
   std::vector<std::uint32_t>& touched = out.ignored_touched;

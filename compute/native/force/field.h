@@ -19,9 +19,10 @@ namespace palpate {
 /// keeps references to its arguments; sum() allocates only when a contact is larger than all before.
 class PressureField {
  public:
-  /// What the arguments refer to outlives this.
+  /// `order`: ids of the tool's triangles by place. What the arguments refer to outlives this.
   static PressureField make(const SceneGeometry& geometry, const TriangleTree& mockup,
-                            const InsideSearch& in_mockup, const TriangleTree& tool, bool tool_has_inside);
+                            const InsideSearch& in_mockup, const TriangleTree& tool,
+                            std::span<const std::uint32_t> order, bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -51,6 +52,7 @@ class PressureField {
                       DepthSearch::kNobody;  ///< places of the last samples' nearest triangles in their trees
     FieldSums field;
     std::uint32_t flags = 0;
+    std::vector<CarrierSums> carriers;    ///< the helper's; the asker's are the frame's
     std::vector<std::uint32_t> touched;   ///< ignored patches, in any order
     std::vector<gpu::FrameSample> asked;  ///< extra samples; for a triangle their place in the next one
     std::vector<AskedExtra> extras;
@@ -108,7 +110,7 @@ class PressureField {
     std::uint32_t whole = 0, between = 0;
     bool all() const { return (whole | between) == 0; }
   };
-  void list_tool_samples();
+  void list_tool_samples(std::span<const std::uint32_t> order);
   void choose_levels(const FoundSets& found, std::uint32_t coarser);
   static std::uint64_t weight_of(const LatticeMesh& mesh, std::uint32_t triangle, int level,
                                  const Level& taken);

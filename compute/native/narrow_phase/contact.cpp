@@ -6,6 +6,17 @@ namespace palpate {
 
 using namespace gpu;  // names of shaders/shared/frame.h
 
+namespace {
+
+/// Of which set a triangle of C_m is, by its mark.
+std::uint32_t set_of(const MobileResult& m) {
+  return (m.state & kMobileHit) != 0        ? kMobileHit
+         : (m.state & kMobileInternal) != 0 ? kMobileInternal
+                                            : kMobileBoundary;
+}
+
+}  // namespace
+
 std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, const SceneTables& scene,
                                                std::span<const std::uint32_t> order,
                                                std::shared_ptr<const OpenInside> known) {
@@ -19,10 +30,11 @@ std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, co
   out->in_tool_.use(std::move(known));
   out->sets_ = ContactSets::make(geometry, scene, order, out->in_tool_);
   out->statics_.resize(geometry.mockup.triangles.size());
+  out->mobiles_.resize(geometry.tool.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
   out->field_ = PressureField::make(geometry, scene.search->triangles,
                                     InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
-                                    out->tool_triangles_, tool.closed != 0 || tool.has_internal != 0);
+                                    out->tool_triangles_, order, tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 
@@ -39,11 +51,11 @@ void NarrowPhase::decide(PosedTool& tool, const Candidates& near, FrameHelper* h
     if ((s.state & kStaticListed) != 0) out.bst.push_back(s.id);
     if ((s.state & kStaticSampled) != 0) out.est.push_back(s.id);
   }
-  for (const MobileResult& m : found_.mobiles)
-    ((m.state & kMobileHit) != 0        ? out.cmt
-     : (m.state & kMobileInternal) != 0 ? out.imt
-                                        : out.bmt)
-        .push_back(m.id);
+  mobiles_.clear();  // of a frame that ended for want of memory
+  for (const MobileResult& m : found_.mobiles) mobiles_.add(m.id, set_of(m));
+  mobiles_.take_all([&](std::uint32_t id, std::uint32_t set) {
+    (set == kMobileHit ? out.cmt : set == kMobileInternal ? out.imt : out.bmt).push_back(id);
+  });
 }
 
 }  // namespace palpate

@@ -33,8 +33,8 @@ class NarrowPhase {
   void solve(PosedTool& tool, const Ignored* ignored, const Candidates& near, FrameHelper* helper,
              Contacts& out, Stage stage) {
     decide(tool, near, helper, out);
-    stage("sets", near.pairs.count + near.touch.count + near.open.count + found_.statics.size() +
-                      found_.mobiles.size() + found_.samples.size());
+    stage("sets", near.pairs.count + near.touch.count + near.swallowed.count + near.open.count +
+                      found_.statics.size() + found_.mobiles.size() + found_.samples.size());
     if (!out.contact) return;
     const std::uint64_t before = field_.looks();
     field_.sum(tool.pose(), sets_, found_, {.ignored = ignored, .carriers = out.lists}, helper, out);
@@ -45,7 +45,7 @@ class NarrowPhase {
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }
   std::uint64_t bytes() const {
     return sizeof *this + bytes_of(tool_boxes_) + tool_triangles_.bytes() + statics_.bytes() +
-           in_tool_.bytes() + sets_.bytes() + field_.bytes() + found_.bytes();
+           mobiles_.bytes() + in_tool_.bytes() + sets_.bytes() + field_.bytes() + found_.bytes();
   }
 
  private:
@@ -57,6 +57,7 @@ class NarrowPhase {
   TriangleTree tool_triangles_;
   std::shared_ptr<const SearchTables> search_;
   IdMarks statics_;
+  IdMarks mobiles_;  ///< C_m by id, where lists are wanted
   InsideSearch in_tool_;
   ContactSets sets_;
   PressureField field_;

@@ -266,14 +266,14 @@ void ContactSets::decide_pairs(const PosedTool& tool, std::span<const PairCandid
     found.filter.judge(verdicts);
     for (std::size_t lane = 0; lane < now.size(); ++lane) {
       if (verdicts[lane] == PairFilter::kApart) continue;
-      const std::uint32_t s = now[lane].static_id, id = order_[now[lane].place];
+      const std::uint32_t s = now[lane].static_id;
       if (verdicts[lane] == PairFilter::kUnknown) {
-        const exact::Corners& t = tool.moved(id);
+        const exact::Corners& t = tool.moved(order_[now[lane].place]);
         if (!exact::triangles_meet({mockup.corner(s, 0), mockup.corner(s, 1), mockup.corner(s, 2)}, t,
                                    exact::raw_normal(t)))
           continue;
       }
-      found.pairs.push_back({s, id});
+      found.pairs.push_back(now[lane]);
     }
   }
 }
@@ -283,14 +283,13 @@ void ContactSets::decide_pairs(const PosedTool& tool, std::span<const PairCandid
 void ContactSets::decide_voxels(const PosedTool& tool, std::span<const TouchCandidate> candidates,
                                 Lane& lane) const {
   const GridConstants& grid = mockup_.grid();
-  std::uint32_t place = kNone, id = 0, marks = 0;  // candidates of one tool triangle follow each other
-  const exact::Corners* corners = nullptr;         // of this triangle, once they are asked for
+  std::uint32_t place = kNone, marks = 0;   // candidates of one tool triangle follow each other
+  const exact::Corners* corners = nullptr;  // of this triangle, once they are asked for
   exact::Box box{};
   for (const TouchCandidate& candidate : candidates) {
     if (candidate.place != place) {
       place = candidate.place;
-      id = order_[place];
-      marks = mobiles_.marks(id);
+      marks = mobiles_.marks(place);
       corners = nullptr;
     }
     // CMT outdoes IMT, and that BMT.
@@ -299,14 +298,14 @@ void ContactSets::decide_voxels(const PosedTool& tool, std::span<const TouchCand
         internal ? kMobileHit | kMobileInternal : kMobileHit | kMobileInternal | kMobileBoundary;
     if ((marks & outdone_by) != 0 && (internal || lane.touched[candidate.boundary] != 0)) continue;
     if (corners == nullptr) {
-      corners = &tool.moved(id);
+      corners = &tool.moved(order_[place]);
       box = exact::box_of(*corners);
     }
     const Int3 voxel(candidate.xy & 0xFFFF, candidate.xy >> 16, candidate.z & ~kWholeBrick);
     const std::int32_t side = (candidate.z & kWholeBrick) != 0 ? 8 * grid.size : grid.size;
     if (!exact::triangle_touches_cube(*corners, box, grid.origin + grid.size * voxel, side)) continue;
     const std::uint32_t mark = internal ? kMobileInternal : kMobileBoundary;
-    if ((marks & mark) == 0) lane.mobiles.push_back({id, mark});
+    if ((marks & mark) == 0) lane.mobiles.push_back({place, mark});
     marks |= mark;
     if (internal || lane.touched[candidate.boundary] != 0) continue;
     lane.touched_voxels.push_back(candidate.boundary);
@@ -333,9 +332,9 @@ void ContactSets::list(IdMarks& statics, FoundSets& out) {
     state.est += !hit && (marks & kStaticSampled) != 0 ? 1u : 0u;
     out.statics.push_back({id, marks, kNone, kNone});
   });
-  mobiles_.take_all([&](std::uint32_t id, std::uint32_t marks) {
+  mobiles_.take_all([&](std::uint32_t place, std::uint32_t marks) {
     ((marks & kMobileHit) != 0 ? state.cmt : (marks & kMobileInternal) != 0 ? state.imt : state.bmt) += 1;
-    out.mobiles.push_back({id, marks});
+    out.mobiles.push_back({order_[place], marks});
   });
 }
 
@@ -363,10 +362,10 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
   });
   // CST and CMT.
   for (const Lane& lane : lanes_)
-    for (const ContactPair& pair : lane.pairs) {
-      out.pairs.push_back(pair);
+    for (const PairCandidate& pair : lane.pairs) {
+      out.pairs.push_back({pair.static_id, order_[pair.place]});
       statics.add(pair.static_id, kStaticHit);
-      mobiles_.add(pair.mobile, kMobileHit);
+      mobiles_.add(pair.place, kMobileHit);
     }
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.
@@ -387,10 +386,14 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
   });
   // IMT, BMT, BST and the rest of EST.
   for (Lane& lane : lanes_) {
-    for (const MobileResult& mobile : lane.mobiles) mobiles_.add(mobile.id, mobile.state);
+    for (const TouchingPlace& mobile : lane.mobiles) mobiles_.add(mobile.place, mobile.mark);
     mark_lists(lane, statics);
     for (const FrameSample& sample : lane.inside) take(sample);
   }
+  for (const std::uint32_t run : near.swallowed.room.first(near.swallowed.count))
+    for (std::uint32_t place = kRunSize * run;
+         place < std::min<std::size_t>(kRunSize * (run + 1), order_.size()); ++place)
+      mobiles_.add(place, kMobileInternal);
   for (const SampleChunk& chunk : near.samples.room.first(near.samples.count))
     scan(chunk, [&](const FrameSample& sample) {
       if (inside(tool.pose(), sample.point)) take(sample);

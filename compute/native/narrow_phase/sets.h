@@ -18,12 +18,11 @@
 
 namespace palpate {
 
-/// What detection finds at a pose: frame_state and the lists that the device would leave. C_s and C_m ascend
-/// by id.
+/// What detection finds at a pose: frame_state and the lists that the device would leave.
 struct FoundSets {
   gpu::FrameState state{};
-  std::vector<gpu::StaticResult> statics;  ///< C_s by slot
-  std::vector<gpu::MobileResult> mobiles;  ///< C_m
+  std::vector<gpu::StaticResult> statics;  ///< C_s, ascending by id
+  std::vector<gpu::MobileResult> mobiles;  ///< C_m by place: what follows each other lies together
   std::vector<gpu::FrameSample> samples;   ///< that count
   std::vector<gpu::ContactPair> pairs;
 
@@ -68,15 +67,19 @@ class ContactSets {
     std::uint32_t sides;  ///< a bit a plane of a listed triangle: the point is on its outer side
     bool in_cell;         ///< it is far enough from all of them
   };
+  /// A tool triangle's place, and a mark for it (kMobile…).
+  struct TouchingPlace {
+    std::uint32_t place, mark;
+  };
   /// What one of a frame's threads keeps.
   struct alignas(kOwnLines) Lane {
     PairFilter filter;
-    std::vector<gpu::ContactPair> pairs;        ///< of this frame: those that meet
+    std::vector<PairCandidate> pairs;           ///< of this frame: those that meet
     std::vector<OpenPoint> open;                ///< of the part at hand
     std::vector<Int3> points;                   ///< likewise, in the tool's frame
     std::vector<gpu::FrameSample> inside;       ///< of this frame: those that lie inside
     std::vector<gpu::FrameSample> near;         ///< in V_bnd voxels of the fine partition
-    std::vector<gpu::MobileResult> mobiles;     ///< of this frame: what touches voxels
+    std::vector<TouchingPlace> mobiles;         ///< of this frame: what touches voxels
     std::vector<std::uint32_t> touched_voxels;  ///< of this frame: V_bnd ones
     std::vector<std::uint8_t> touched;          ///< by V_bnd voxel: it is one of these
     void untouch() {
@@ -105,7 +108,7 @@ class ContactSets {
   std::span<const std::uint32_t> fine_exit_;
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
   CellMemo cells_;                               ///< of fine V_bnd voxels: whether they are inside
-  IdMarks mobiles_;                              ///< C_m, with kMobile…
+  IdMarks mobiles_;                              ///< C_m by place, with kMobile…
 };
 
 }  // namespace palpate
