@@ -4,8 +4,8 @@
 #include <chrono>
 #include <utility>
 
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/tool_order.h"
+#include "model/bytes_of.h"
 #include "model/contact/contact_areas.h"
 
 namespace palpate::native {

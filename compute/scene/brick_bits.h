@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/scene_tables.h"
+#include "model/bytes_of.h"
 #include "model/lattice/vector.h"
 
 namespace palpate {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "compute/native/processor.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/search_tables.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 namespace {

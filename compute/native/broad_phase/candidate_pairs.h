@@ -8,9 +8,9 @@
 #include "compute/native/broad_phase/listed_boxes.h"
 #include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/native/frame_helper.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/exact.h"
 #include "compute/scene/scene_tables.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 

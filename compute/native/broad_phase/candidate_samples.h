@@ -7,9 +7,9 @@
 #include "compute/native/broad_phase/candidates.h"
 #include "compute/native/broad_phase/solid_bits.h"
 #include "compute/native/narrow_phase/open_inside.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/samples.h"
 #include "compute/scene/scene_tables.h"
+#include "model/bytes_of.h"
 #include "model/lattice/lattice.h"
 #include "model/scene/scene_geometry.h"
 

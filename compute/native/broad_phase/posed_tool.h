@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/exact.h"
+#include "model/bytes_of.h"
 #include "model/lattice/lattice.h"
 #include "model/lattice/lattice_mesh.h"
 

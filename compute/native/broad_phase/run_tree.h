@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compute/native/broad_phase/turned_boxes.h"
-#include "compute/scene/bytes_of.h"
+#include "model/bytes_of.h"
 #include "model/lattice/lattice_mesh.h"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compute/scene/brick_bits.h"
-#include "compute/scene/bytes_of.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 

@@ -10,8 +10,8 @@
 
 #include "compute/native/frame_helper.h"
 #include "compute/native/processor.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/exact.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 namespace {

@@ -8,8 +8,8 @@
 #include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/sets.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/triangle_tree.h"
+#include "model/bytes_of.h"
 #include "model/contact/contacts.h"
 #include "model/scene/scene_geometry.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "compute/scene/bytes_of.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 

@@ -29,7 +29,6 @@ std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, co
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
   out->in_tool_.use(std::move(known));
   out->sets_ = ContactSets::make(geometry, scene, order, out->in_tool_);
-  out->statics_.resize(geometry.mockup.triangles.size());
   out->mobiles_.resize(geometry.tool.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
   out->field_ = PressureField::make(geometry, scene.search->triangles,
@@ -39,7 +38,7 @@ std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, co
 }
 
 void NarrowPhase::decide(PosedTool& tool, const Candidates& near, FrameHelper* helper, Contacts& out) {
-  sets_.decide(tool, near, statics_, helper, found_);
+  sets_.decide(tool, near, helper, found_);
   out.contact = found_.state.contact != 0;
   out.pairs = found_.pairs.size();
   if (!out.lists) return;

@@ -10,10 +10,10 @@
 #include "compute/native/frame_helper.h"
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/native/narrow_phase/sets.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/partition_lookup.h"
 #include "compute/scene/scene_tables.h"
 #include "compute/scene/search_tables.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 
@@ -44,8 +44,8 @@ class NarrowPhase {
   /// After solve().
   std::span<const gpu::ContactPair> pairs() const { return found_.pairs; }
   std::uint64_t bytes() const {
-    return sizeof *this + bytes_of(tool_boxes_) + tool_triangles_.bytes() + statics_.bytes() +
-           mobiles_.bytes() + in_tool_.bytes() + sets_.bytes() + field_.bytes() + found_.bytes();
+    return sizeof *this + bytes_of(tool_boxes_) + tool_triangles_.bytes() + mobiles_.bytes() +
+           in_tool_.bytes() + sets_.bytes() + field_.bytes() + found_.bytes();
   }
 
  private:
@@ -56,7 +56,6 @@ class NarrowPhase {
   std::vector<std::uint8_t> tool_boxes_;  ///< SearchTables::boxes_of
   TriangleTree tool_triangles_;
   std::shared_ptr<const SearchTables> search_;
-  IdMarks statics_;
   IdMarks mobiles_;  ///< C_m by id, where lists are wanted
   InsideSearch in_tool_;
   ContactSets sets_;

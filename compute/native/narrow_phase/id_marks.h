@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compute/scene/bytes_of.h"
+#include "model/bytes_of.h"
 
 namespace palpate {
 

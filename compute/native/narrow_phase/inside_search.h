@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "compute/native/narrow_phase/open_inside.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/partition_lookup.h"
+#include "model/bytes_of.h"
 #include "model/lattice/lattice_mesh.h"
 
 namespace palpate {

@@ -44,13 +44,14 @@ ContactSets ContactSets::make(const SceneGeometry& geometry, const SceneTables& 
   out.fine_ = PartitionLookup(scene.fine);
   out.fine_exit_ = scene.fine_exit;
   for (Lane& lane : out.lanes_) lane.touched.resize(scene.mockup.grid.boundary_voxels);
+  out.statics_.resize(geometry.mockup.triangles.size());
   out.mobiles_.resize(order.size());
   out.cells_ = CellMemo(scene.fine.grid.boundary_voxels);
   return out;
 }
 
 std::uint64_t ContactSets::bytes() const {
-  std::uint64_t sum = cells_.bytes() + mobiles_.bytes();
+  std::uint64_t sum = cells_.bytes() + statics_.bytes() + mobiles_.bytes();
   for (const Lane& lane : lanes_)
     sum += bytes_of(lane.pairs) + bytes_of(lane.open) + bytes_of(lane.points) + bytes_of(lane.inside) +
            bytes_of(lane.near) + bytes_of(lane.mobiles) + bytes_of(lane.touched_voxels) +
@@ -314,19 +315,19 @@ void ContactSets::decide_voxels(const PosedTool& tool, std::span<const TouchCand
 }
 
 /// BST: what touched voxels list. Afterwards none is touched.
-void ContactSets::mark_lists(Lane& lane, IdMarks& statics) const {
+void ContactSets::mark_lists(Lane& lane) {
   const std::vector<std::uint32_t>& voxels = lane.touched_voxels;
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     if (i + kAhead < voxels.size()) __builtin_prefetch(mockup_.list(voxels[i + kAhead]).data());
-    for (const std::uint32_t id : mockup_.list(voxels[i])) statics.add(id, kStaticListed);
+    for (const std::uint32_t id : mockup_.list(voxels[i])) statics_.add(id, kStaticListed);
   }
   lane.untouch();
 }
 
 /// C_s and C_m, and how many there are of CST, EST and the tool's sets.
-void ContactSets::list(IdMarks& statics, FoundSets& out) {
+void ContactSets::list(FoundSets& out) {
   FrameState& state = out.state;
-  statics.take_all([&](std::uint32_t id, std::uint32_t marks) {
+  statics_.take_all([&](std::uint32_t id, std::uint32_t marks) {
     const bool hit = (marks & kStaticHit) != 0;
     state.cst += hit ? 1u : 0u;
     state.est += !hit && (marks & kStaticSampled) != 0 ? 1u : 0u;
@@ -338,15 +339,14 @@ void ContactSets::list(IdMarks& statics, FoundSets& out) {
   });
 }
 
-void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
-                         FoundSets& out) {
+void ContactSets::decide(const PosedTool& tool, const Candidates& near, FrameHelper* helper, FoundSets& out) {
   out.state = {};
   out.statics.clear();
   out.mobiles.clear();
   out.samples.clear();
   out.pairs.clear();
   // Of a frame that ended for want of memory: others leave nothing marked or touched.
-  statics.clear();
+  statics_.clear();
   mobiles_.clear();
   for (Lane& lane : lanes_) {
     lane.pairs.clear();
@@ -364,13 +364,13 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
   for (const Lane& lane : lanes_)
     for (const PairCandidate& pair : lane.pairs) {
       out.pairs.push_back({pair.static_id, order_[pair.place]});
-      statics.add(pair.static_id, kStaticHit);
+      statics_.add(pair.static_id, kStaticHit);
       mobiles_.add(pair.place, kMobileHit);
     }
 
   // Samples inside the tool: EST. A first corner tells EST and does not count.
   const auto take = [&](const FrameSample& sample) {
-    statics.add(sample.static_id & ~kCornerProbe, kStaticSampled);
+    statics_.add(sample.static_id & ~kCornerProbe, kStaticSampled);
     if ((sample.static_id & kCornerProbe) == 0) out.samples.push_back(sample);
   };
   const std::span<const FrameSample> open = near.open.room.first(near.open.count);
@@ -387,7 +387,7 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
   // IMT, BMT, BST and the rest of EST.
   for (Lane& lane : lanes_) {
     for (const TouchingPlace& mobile : lane.mobiles) mobiles_.add(mobile.place, mobile.mark);
-    mark_lists(lane, statics);
+    mark_lists(lane);
     for (const FrameSample& sample : lane.inside) take(sample);
   }
   for (const std::uint32_t run : near.swallowed.room.first(near.swallowed.count))
@@ -399,7 +399,7 @@ void ContactSets::decide(const PosedTool& tool, const Candidates& near, IdMarks&
       if (inside(tool.pose(), sample.point)) take(sample);
     });
 
-  list(statics, out);
+  list(out);
   out.state.contact = out.state.cst + out.state.imt + out.state.est != 0 ? 1 : 0;
 }
 

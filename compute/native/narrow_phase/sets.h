@@ -11,9 +11,9 @@
 #include "compute/native/narrow_phase/id_marks.h"
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/native/narrow_phase/pair_filter.h"
-#include "compute/scene/bytes_of.h"
 #include "compute/scene/partition_lookup.h"
 #include "compute/scene/scene_tables.h"
+#include "model/bytes_of.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate {
@@ -42,10 +42,8 @@ class ContactSets {
   static ContactSets make(const SceneGeometry& geometry, const SceneTables& scene,
                           std::span<const std::uint32_t> order, InsideSearch& in_tool);
 
-  /// `near`: as the search has found it with the same `tool`. `statics`: on the mock-up's ids; C_s is marked
-  /// there (kStatic…) on the way, and nothing is afterwards. `helper` may be null.
-  void decide(const PosedTool& tool, const Candidates& near, IdMarks& statics, FrameHelper* helper,
-              FoundSets& out);
+  /// `near`: as the search has found it with the same `tool`. `helper` may be null.
+  void decide(const PosedTool& tool, const Candidates& near, FrameHelper* helper, FoundSets& out);
 
   /// A box of world lattice points, low and high, that holds all that may lie inside the tool.
   std::array<Int3, 2> reach(const LatticePose& pose) const;
@@ -56,7 +54,7 @@ class ContactSets {
   std::uint64_t bytes() const;
 
  private:
-  void list(IdMarks& statics, FoundSets& out);
+  void list(FoundSets& out);
   /// A point in a V_bnd voxel of the fine partition, of one open sample or of several that follow each other:
   /// first corners of neighbours.
   struct OpenPoint {
@@ -88,7 +86,7 @@ class ContactSets {
     }
   };
   void decide_voxels(const PosedTool& tool, std::span<const TouchCandidate> candidates, Lane& lane) const;
-  void mark_lists(Lane& lane, IdMarks& statics) const;
+  void mark_lists(Lane& lane);
   void decide_pairs(const PosedTool& tool, std::span<const PairCandidate> candidates, Lane& lane) const;
   void find_cells(const LatticePose& pose, std::span<const gpu::FrameSample> samples,
                   std::vector<OpenPoint>& open) const;
@@ -108,6 +106,7 @@ class ContactSets {
   std::span<const std::uint32_t> fine_exit_;
   std::array<Lane, FrameHelper::kLanes> lanes_;  ///< by thread of the frame
   CellMemo cells_;                               ///< of fine V_bnd voxels: whether they are inside
+  IdMarks statics_;                              ///< C_s, with kStatic…; between frames none, as below
   IdMarks mobiles_;                              ///< C_m by place, with kMobile…
 };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "model/bytes_of.h"
 #include "service/loop/thread_share.h"
 #include "service/server/http/json_input.h"
 #include "service/server/http/safe_path.h"
@@ -17,11 +18,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kProgressEvery = std::chrono::milliseconds(100);  ///< chosen: what a bar can show
-
-template <class T>
-std::uint64_t bytes_of(const std::vector<T>& list) {
-  return list.size() * sizeof(T);
-}
 
 std::uint64_t bytes_of(const LatticeMesh& mesh) {
   return bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.flags) +
