@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kProgressEvery = std::chrono::milliseconds(100);  ///< chosen: what a bar can show
 
-std::uint64_t bytes_of(const LatticeMesh& mesh) {
+std::uint64_t bytes_kept(const LatticeMesh& mesh) {
   return bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.flags) +
          bytes_of(mesh.unit_normal_q30) + bytes_of(mesh.sample_weight_q30) + bytes_of(mesh.sample_axis) +
          bytes_of(mesh.neighbour_begin) + bytes_of(mesh.neighbours) + bytes_of(mesh.patch) +
@@ -28,9 +28,9 @@ std::uint64_t bytes_of(const LatticeMesh& mesh) {
 }
 
 /// What a prepared scene keeps: back end and integers.
-std::uint64_t bytes_of(const HostedScene& scene) {
+std::uint64_t bytes_kept(const HostedScene& scene) {
   const LoadedScene& loaded = scene.loaded;
-  return scene.backend->memory_bytes() + bytes_of(loaded.geometry.mockup) + bytes_of(loaded.geometry.tool);
+  return scene.backend->memory_bytes() + bytes_kept(loaded.geometry.mockup) + bytes_kept(loaded.geometry.tool);
 }
 
 ordered_json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -422,7 +422,7 @@ void SceneStore::prepare_one(const std::shared_ptr<Entry>& entry) {
     return;
   }
   if (entry->content.ignore_initial) prepared->loaded.scene.start_contacts = StartContacts::kIgnoreInitial;
-  finish(entry, prepared, bytes_of(*prepared));
+  finish(entry, prepared, bytes_kept(*prepared));
 }
 
 /// Whether `bytes` more fit into the budget, after evicting scenes out of use.
