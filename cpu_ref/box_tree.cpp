@@ -1,6 +1,10 @@
 #include "cpu_ref/box_tree.h"
 
+#if PALPATE_EMBREE >= 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -54,9 +58,15 @@ void in_one_thread(const Work& work) {
   arena.execute(work);
 }
 
+#if PALPATE_EMBREE >= 4
+using RayContext = RTCRayQueryContext;
+#else
+using RayContext = RTCIntersectContext;
+#endif
+
 /// What a ray or a point gathers; first member, so that Embree's context pointer is a pointer to it.
 struct Gathering {
-  RTCIntersectContext context;
+  RayContext context;
   std::vector<std::uint32_t>* found = nullptr;
 };
 
@@ -121,7 +131,6 @@ void BoxTree::build(std::vector<Box> boxes) {
 
 void BoxTree::along_ray(const Int3& origin, const Int3& direction, std::vector<std::uint32_t>& found) const {
   Gathering gathering;
-  rtcInitIntersectContext(&gathering.context);
   gathering.found = &found;
   // A direction of length about 1 keeps Embree's reciprocals in range; only candidates depend on its
   // rounding.
@@ -137,7 +146,16 @@ void BoxTree::along_ray(const Int3& origin, const Int3& direction, std::vector<s
   ray.tnear = 0;
   ray.tfar = std::numeric_limits<float>::infinity();
   ray.mask = ~0u;
+#if PALPATE_EMBREE >= 4
+  rtcInitRayQueryContext(&gathering.context);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &gathering.context;
+  rtcOccluded1(embree_->scene, &ray, &arguments);
+#else
+  rtcInitIntersectContext(&gathering.context);
   rtcOccluded1(embree_->scene, &gathering.context, &ray);
+#endif
 }
 
 void BoxTree::meeting(const Box& box, std::vector<std::uint32_t>& found) const {

@@ -1,6 +1,10 @@
 // Embree's collide: trees of boxes over both bodies, the tool's refitted at every pose; it proposes pairs of
 // boxes that meet, and triangles are then tested in double precision.
+#if PALPATE_EMBREE >= 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <tbb/task_arena.h>
 
 #include <algorithm>

@@ -25,8 +25,10 @@ std::uint64_t number(const Json& object, const char* key, std::uint64_t otherwis
   return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : otherwise;
 }
 
+/// Of an object; of anything else an empty one.
 const Json& list(const Json& object, const char* key) {
   static const Json empty = Json::array();
+  if (!object.is_object()) return empty;
   const auto found = object.find(key);
   return found != object.end() && found->is_array() ? *found : empty;
 }
@@ -45,8 +47,7 @@ std::string distrust_nodes(const Json& nodes) {
     seen[root].state = kOpen;
     while (!stack.empty()) {
       const auto [node, next] = stack.back();
-      const Json& children =
-          nodes[node].is_object() ? list(nodes[node], "children") : list(Json::object(), "children");
+      const Json& children = list(nodes[node], "children");
       if (next == children.size()) {
         for (const Json& child : children) {
           const Node& below = seen[child.get<std::size_t>()];

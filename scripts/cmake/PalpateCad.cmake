@@ -1,5 +1,5 @@
-# palpate_find_cad([REQUIRED|QUIET]): OpenCASCADE's imported targets TK…, OpenCASCADE_FOUND and
-# OpenCASCADE_INCLUDE_DIR, in the folder that calls. Its targets name what its viewer is linked with (X11, GL,
+# palpate_find_cad([REQUIRED|QUIET]): OpenCASCADE's imported targets TK…, OpenCASCADE_FOUND, OpenCASCADE_INCLUDE_DIR
+# and, for what 7.8 calls differently, PALPATE_CAD_STEP and PALPATE_CAD_IGES, in the folder that calls. Its targets name what its viewer is linked with (X11, GL,
 # fontconfig, …), whose development files its packages don't bring and nobody here needs: its shared libraries
 # find theirs by themselves.
 macro(palpate_find_cad)
@@ -14,4 +14,11 @@ macro(palpate_find_cad)
       set_target_properties(${library} PROPERTIES INTERFACE_LINK_LIBRARIES "${linked}")
     endif()
   endforeach()
+  if(TARGET TKDESTEP)
+    set(PALPATE_CAD_STEP TKDESTEP)
+    set(PALPATE_CAD_IGES TKDEIGES)
+  else()
+    set(PALPATE_CAD_STEP TKXDESTEP)
+    set(PALPATE_CAD_IGES TKXDEIGES)
+  endif()
 endmacro()

@@ -30,7 +30,8 @@ std::uint64_t bytes_kept(const LatticeMesh& mesh) {
 /// What a prepared scene keeps: back end and integers.
 std::uint64_t bytes_kept(const HostedScene& scene) {
   const LoadedScene& loaded = scene.loaded;
-  return scene.backend->memory_bytes() + bytes_kept(loaded.geometry.mockup) + bytes_kept(loaded.geometry.tool);
+  return scene.backend->memory_bytes() + bytes_kept(loaded.geometry.mockup) +
+         bytes_kept(loaded.geometry.tool);
 }
 
 ordered_json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
