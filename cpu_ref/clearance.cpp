@@ -31,7 +31,10 @@ Box grown(const Box& box, std::int64_t by) {
 
 }  // namespace
 
-Clearance smallest_distance(const Frame& frame, std::int32_t within) {
+Clearance smallest_distance(const Frame& frame, std::int32_t within, bool collinear) {
+  const auto counts = [&](std::uint32_t m) {
+    return !frame.tool[m].collapsed() || (collinear && !frame.scene.geometry->tool.collapsed(m));
+  };
   Clearance best;
   std::int64_t reach = within;  // no pair further than that is wanted
   std::vector<std::uint32_t> near;
@@ -66,13 +69,13 @@ Clearance smallest_distance(const Frame& frame, std::int32_t within) {
       std::pair<std::int64_t, std::uint32_t> first{INT64_MAX, 0};
       const Box box = triangle_of(frame.mockup(), near.front()).box();
       for (std::uint32_t m = 0; m < frame.tool.size(); ++m)
-        if (!frame.tool[m].collapsed()) first = std::min(first, std::pair{gap(box, frame.tool[m].box()), m});
+        if (counts(m)) first = std::min(first, std::pair{gap(box, frame.tool[m].box()), m});
       if (first.first != INT64_MAX) take_from(first.second, grown(frame.tool_box, by));
     }
     if (by > within || by > 1 << 30) break;
   }
   for (std::uint32_t m = 0; m < frame.tool.size(); ++m)
-    if (!frame.tool[m].collapsed()) take_from(m, grown(frame.tool[m].box(), reach + 1));
+    if (counts(m)) take_from(m, grown(frame.tool[m].box(), reach + 1));
   return best;
 }
 

@@ -6,6 +6,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <optional>
 
+#include "cpu_ref/triangle_triangle.h"
+
 namespace palpate::cpu_ref {
 namespace {
 
@@ -59,6 +61,7 @@ std::optional<Place> foot_on_face(const Int3& p, const Triangle& t) {
             .edges = {u, v},
             .weights = {uw * vv - vw * uv, vw * uu - uw * uv},
             .den = uu * vv - uv * uv};
+  if (out.den == 0) return std::nullopt;
   if (out.weights[0] < 0 || out.weights[1] < 0 || out.weights[0] + out.weights[1] > out.den)
     return std::nullopt;
   return out;
@@ -68,6 +71,7 @@ Place nearest_on_edge(const Int3& p, const Int3& a, const Int3& b) {
   Integer along = product(b - a, p - a), length = product(b - a, b - a);
   if (along < 0) along = 0;
   if (along > length) along = length;
+  if (length == 0) return corner(a);
   return {.base = a, .edges = {b - a, Int3(0)}, .weights = {along, 0}, .den = length};
 }
 
@@ -86,6 +90,9 @@ std::optional<std::array<Place, 2>> crossing(const Int3& a, const Int3& b, const
 }  // namespace
 
 TriangleDistance distance_of(const Triangle& s, const Triangle& m) {
+  if (m.collapsed())
+    for (int e = 0; e < 3; ++e)
+      if (segment_meets_triangle(m[e], m[(e + 1) % 3], s)) return {};
   std::optional<TriangleDistance> best;
   const auto take = [&](const Place& on_s, const Place& on_m) {
     const std::int32_t steps = steps_between(on_s, on_m);

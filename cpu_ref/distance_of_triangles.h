@@ -11,7 +11,7 @@ struct TriangleDistance {
   Int3 on_s{0}, on_m{0};   ///< on the first feature that is so near, rounded to nearest
 };
 
-/// Neither is collapsed.
+/// `s` is not collapsed; `m` may be a segment, which may pass through `s`: 0, without places.
 TriangleDistance distance_of(const Triangle& s, const Triangle& m);
 
 }  // namespace palpate::cpu_ref

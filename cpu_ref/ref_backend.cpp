@@ -59,7 +59,8 @@ class Asked final : public PoseQuery {
     }
   }
 
-  Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) {
+  /// `collinear`: as smallest_distance() has it.
+  Result<void> clearance(const LatticePose& pose, std::int32_t within, bool collinear, Clearance& out) {
     out = {};
     Contacts contacts;
     if (auto answered = query(pose, nullptr, contacts); !answered) return answered;
@@ -71,7 +72,7 @@ class Asked final : public PoseQuery {
     try {
       Frame frame{scene_, pose, nullptr, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
       tool_tree_.build(transform_tool(frame));
-      out = smallest_distance(frame, within);
+      out = smallest_distance(frame, within, collinear);
       return {};
     } catch (const std::exception& failure) {
       return Error{ErrorCode::kInternal, std::string("The CPU reference failed: ") + failure.what()};
@@ -202,7 +203,15 @@ class RefBackend final : public CollisionBackend {
 
   Result<void> clearance(const LatticePose& pose, std::int32_t within, Clearance& out) override {
     if (!asked_) return Error{ErrorCode::kInternal, "The CPU reference was asked before it was prepared."};
-    return asked_->clearance(pose, within, out);
+    return asked_->clearance(pose, within, moving_, out);
+  }
+
+  /// What is collinear at this pose is not at the next.
+  Result<void> free_time(const LatticePose& pose, ScrewMotion& motion, double time, FreeTime& out) override {
+    moving_ = true;
+    auto done = CollisionBackend::free_time(pose, motion, time, out);
+    moving_ = false;
+    return done;
   }
 
   Result<void> replan(const Plan& plan) override {
@@ -253,6 +262,7 @@ class RefBackend final : public CollisionBackend {
 
   Plan plan_;
   std::unique_ptr<Prepared> scene_;
+  bool moving_ = false;         ///< clearance() is asked for free_time()
   std::optional<Asked> asked_;  ///< by query()
   std::vector<std::unique_ptr<Asked>> helpers_;
   std::optional<PoseThreads> threads_;  ///< of these

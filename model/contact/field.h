@@ -13,6 +13,7 @@ struct WideSum {
   std::int64_t low = 0;   ///< sum of the terms' low 32 bits
   std::int64_t high = 0;  ///< sum of the terms >> 32 (arithmetic)
   bool operator==(const WideSum&) const = default;
+  /// Adds limb by limb.
   WideSum& operator+=(const WideSum& more) {
     low += more.low;
     high += more.high;
@@ -63,7 +64,7 @@ struct CarrierSums {
   std::array<WideSum, 3> push{};    ///< Σ P n
   std::array<WideSum, 3> moment{};  ///< Σ (P >> 10) r
   bool operator==(const CarrierSums&) const = default;
-  /// The id stays.
+  /// Adds what another part of its samples says; the id stays.
   CarrierSums& operator+=(const CarrierSums& more) {
     samples += more.samples;
     max_depth = std::max(max_depth, more.max_depth);

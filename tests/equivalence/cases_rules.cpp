@@ -546,6 +546,15 @@ Case deep_boxes_and_needles() {
   return out;
 }
 
+/// A tool that is flat along x in its own frame: its box has no size there.
+Case flat_tool() {
+  return rule("flat_tool", "a sheet in the plane of y and z as the tool", block(),
+              side_of(Int3(0, -300, -300), Int3(40, 300, 300), 0),
+              [](const SceneGeometry& geometry, Random& random, Known&) {
+                return random_touching_pose(geometry, 0.5, random);
+              });
+}
+
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(),
           inside_of_one_voxel(false),
@@ -564,6 +573,7 @@ std::vector<Case> rule_cases() {
           between_two_areas(),
           swallowed_at_ties(),
           deep_boxes_and_needles(),
+          flat_tool(),
           bridge(),
           long_tool(),
           seams_in_a_row(),

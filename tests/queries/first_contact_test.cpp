@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "compute/native/native_backend.h"
+#include "compute/scene/exact.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate/solids.h"
 #include "model/lattice/rotation.h"
 #include "model/lattice/screw.h"
 #include "model/scene/geometry_build.h"
 #include "service/queries/first_contact.h"
+#include "tests/equivalence/lattice_shapes.h"
 #include "tests/equivalence/random.h"
 
 namespace palpate {
@@ -86,6 +88,33 @@ TEST(FirstContact, OfASphereOnAPlaneIsWhereItsLowestCornerIs) {
     EXPECT_LE(height - touching, early) << "too early";
     EXPECT_LE(found.evaluations, 12u);
   }
+}
+
+/// A sliver half a step high, at a pose where its rounded corners are collinear and it is in no pair: on a
+/// screw it counts nevertheless, for it is there.
+TEST(FirstContact, OfASliverThatIsCollinearAtItsPosesIsNotLate) {
+  const Int3 a(0, 0, 0), b(25, 0, 0), c(50, 1, 0);
+  const auto scene =
+      equivalence::lattice_scene(equivalence::box_of(Int3(-512), Int3(512)), {{a, b, c}, {a, c, b}}, 64, 32);
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  const auto native = make_native_backend(), ref = make_ref_backend();
+  int collinear = 0;
+  for (CollisionBackend* backend : {native.get(), ref.get()}) {
+    ASSERT_TRUE(backend->prepare(*scene, Plan{}, {}));
+    for (int i = 0; i < 40; ++i) {
+      const Quat turned = glm::angleAxis(0.05 * i, Vec3(0, 0, 1));
+      const Pose from = pose_at(Vec3(10, 20, 700), turned), to = pose_at(Vec3(10, 20, 400), turned);
+      const LatticePose at = *to_lattice(from, *scene);
+      collinear +=
+          exact::raw_normal({transform(at, a), transform(at, b), transform(at, c)}) == exact::Normal{};
+      const auto found = first_contact(*backend, *scene, from, to, TouchRule{.tolerance = 0, .early = 16});
+      ASSERT_TRUE(found) << found.error().sentence;
+      ASSERT_EQ(found->kind, FirstContact::Kind::kContact) << backend->name() << ' ' << i;
+      EXPECT_LE(found->time, (700.0 - 512) / 300) << "late";
+      EXPECT_GE(found->time, (700.0 - 512 - 17) / 300) << "early";
+    }
+  }
+  EXPECT_GT(collinear, 0);
 }
 
 TEST(FirstContact, OfABladeTurningIntoAWallIsWhereItsEdgeReachesIt) {

@@ -304,19 +304,18 @@ void BroadPhase::find_samples(const LatticePose& pose, const Reach& whole, Candi
   samples_.find(pose, first, last, lists);
 }
 
-bool BroadPhase::find(PosedTool& tool, FrameHelper* helper, Candidates& lists) {
-  const bool meet = search_all(tool, helper, lists);
+void BroadPhase::find(PosedTool& tool, FrameHelper* helper, Candidates& lists) {
+  search_all(tool, helper, lists);
   looks_ = lists.samples.count + lists.inside.count + lists.open.count;
   for (CandidatePairs::Seen& seen : seen_) looks_ += std::exchange(seen.looks, 0);
-  return meet;
 }
 
-bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists) {
+void BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists) {
   const LatticePose& pose = tool.pose();
-  if (whole_.half[0] < 0) return false;
+  if (whole_.half[0] < 0) return;
   const Turn turn(pose);
   const Reach whole = reach(turn, whole_);
-  if (!meets(whole) && !always_samples_) return false;
+  if (!meets(whole) && !always_samples_) return;
   Search search{tool, {}};
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 3; ++c)
@@ -335,8 +334,7 @@ bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, Candidates& li
     find_beside(search, ahead ? &whole : nullptr, *helper, lists);
   else
     descend(search, tree_->root(), seen_[0], lists);
-  if (lists.full != gpu::kNone) return false;
-  if (!has_inside_) return lists.touch.count + lists.swallowed.count != 0;
+  if (lists.full != gpu::kNone || !has_inside_) return;
   bool meet = always_samples_ || lists.pairs.count != 0;
   // A whole connected part of the mock-up may lie inside the tool.
   for (std::size_t i = 0; i < parts_.size() && !meet; ++i) {
@@ -347,7 +345,6 @@ bool BroadPhase::search_all(PosedTool& tool, FrameHelper* helper, Candidates& li
   met_ = meet;
   if (ahead && !meet) lists.samples.count = lists.inside.count = lists.open.count = 0;
   if (meet && !ahead) find_samples(pose, whole, lists);
-  return meet;
 }
 
 }  // namespace palpate

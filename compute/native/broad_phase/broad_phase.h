@@ -40,9 +40,9 @@ class BroadPhase {
 
   /// Fills the lists: tool triangles with the V_bnd and V_int voxels within kCloseSteps of which they may
   /// come, but for runs of them that lie deep inside, pairs that may come within kCloseSteps, and, if the
-  /// bodies may meet, samples that may lie inside the tool. True: they may. The pose must not be beyond the
-  /// lattice. `helper` may be null.
-  bool find(PosedTool& tool, FrameHelper* helper, Candidates& lists);
+  /// bodies may meet, samples that may lie inside the tool. The pose must not be beyond the lattice. `helper`
+  /// may be null.
+  void find(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   /// Voxels, list entries and samples that the last find() looked at.
   std::uint64_t looks() const { return looks_; }
   std::uint64_t bytes() const;
@@ -62,7 +62,7 @@ class BroadPhase {
   Reach reach(const Turn& turn, const Box& box) const;
   bool meets(const Reach& reach) const;
   bool meets(BrickBits::Range voxels) const;
-  bool search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists);
+  void search_all(PosedTool& tool, FrameHelper* helper, Candidates& lists);
   unsigned occupied(const EightRanges& voxels) const;
   bool all_internal(const BrickBits::Range& voxels) const;
   void descend(const Search& search, const RunTree::Group& from, CandidatePairs::Seen& seen,

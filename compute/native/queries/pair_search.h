@@ -89,6 +89,7 @@ class PairSearch {
   };
   struct Mobile {  ///< a triangle of the tool at the pose
     std::uint32_t id;
+    bool collinear;
     exact::Corners at;
     BoxOf box;
     std::array<double, 9> corners;  ///< k of corner c at [3 c + k]

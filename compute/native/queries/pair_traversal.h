@@ -58,6 +58,14 @@ inline BoxOf box_of(const exact::Corners& t) {
   return {vec(box.low), vec(box.high)};
 }
 
+/// Whether a triangle whose corners are collinear passes through another, as the segment that it is.
+inline bool passes_through(const exact::Corners& line, const exact::Corners& t) {
+  for (std::size_t e = 0; e < 3; ++e)
+    if (line[e] != line[(e + 1) % 3] && exact::segment_crossing(line[e], line[(e + 1) % 3], t) != 0)
+      return true;
+  return false;
+}
+
 /// The lowest place of a box along a direction.
 inline double lowest(const Vec& way, const BoxOf& box) {
   double out = 0;
@@ -321,7 +329,8 @@ void PairSearch::pose(const Policy& policy, const Lead& lead) {
     Mobile& m = mobiles_[count_];
     m.id = trees_->tool.order[kWide * lead.run + i];
     m.at = mobile(m.id);
-    if (exact::raw_normal(m.at) == exact::Normal{}) continue;  // collinear at this pose: in no pair
+    m.collinear = exact::raw_normal(m.at) == exact::Normal{};
+    if (m.collinear && !Policy::kMoves) continue;  // at this pose in no pair, but perhaps at the next
     // What meets is mostly found before this pays; what is nearest, or met soonest, sooner without it.
     if (!Policy::kNearestFirst && runs_asked_ > kFewBalls && lead.rooms[i] < trees_->field.detail_steps() &&
         balls_.worth_asking()) {
@@ -456,7 +465,8 @@ bool PairSearch::leaf(Policy& policy, const Mobile& m, std::uint32_t run, const 
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       if ((crossing >> lane & 1) == 0 || verdicts[lane] == PairFilter::kApart) continue;
       if (verdicts[lane] == PairFilter::kUnknown &&
-          !exact::triangles_meet(fixed(ids[lane]), m.at, exact::raw_normal(m.at)))
+          !(m.collinear ? passes_through(m.at, fixed(ids[lane]))
+                        : exact::triangles_meet(fixed(ids[lane]), m.at, exact::raw_normal(m.at))))
         continue;
       policy.met(ids[lane], m.id);
       return false;
