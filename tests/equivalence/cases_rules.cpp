@@ -522,39 +522,6 @@ Case bead_beside_a_swallowed_part() {
 
 }  // namespace
 
-/// Boxes and needles deep inside, in bricks that are V_int alone, or with some of them in the wall. A needle
-/// has half a step of height: at some poses its corners are collinear.
-Case deep_boxes_and_needles() {
-  Triangles tool;
-  for (int i = 0; i < 27; ++i) {
-    const Int3 low = 300 * (Int3(i % 3, i / 3 % 3, i / 9) - 1);
-    append(tool, box_of(low, low + 40 + i));
-    const Int3 a = low + 150, b = a + Int3(25, 0, 0), c = a + Int3(50, 1, 0);
-    if (i % 4 == 0) append(tool, {{a, b, c}, {a, c, b}});
-  }
-  Case out = rule(
-      "deep_boxes_and_needles", "a tool deep inside: IMT by whole bricks, but for what is collinear",
-      box_of(Int3(-2560), Int3(2560)), tool, [](const SceneGeometry& geometry, Random& random, Known& known) {
-        LatticePose pose = random_touching_pose(geometry, 0.5, random);
-        const bool wholly = random.below(3) != 0;
-        pose.translation = any(random, wholly ? 900 : 2400);
-        known.contact = true;
-        if (wholly) known.pairs = Pairs{};
-        return pose;
-      });
-  out.poses = 24;
-  return out;
-}
-
-/// A tool that is flat along x in its own frame: its box has no size there.
-Case flat_tool() {
-  return rule("flat_tool", "a sheet in the plane of y and z as the tool", block(),
-              side_of(Int3(0, -300, -300), Int3(40, 300, 300), 0),
-              [](const SceneGeometry& geometry, Random& random, Known&) {
-                return random_touching_pose(geometry, 0.5, random);
-              });
-}
-
 std::vector<Case> rule_cases() {
   return {seam_with_a_common_corner(),
           inside_of_one_voxel(false),
@@ -572,8 +539,6 @@ std::vector<Case> rule_cases() {
           on_the_sphere(),
           between_two_areas(),
           swallowed_at_ties(),
-          deep_boxes_and_needles(),
-          flat_tool(),
           bridge(),
           long_tool(),
           seams_in_a_row(),

@@ -125,9 +125,9 @@ std::int32_t feature_gap(const Corners& s, const Corners& m, int feature, const 
     const Int3& p = (of_m ? m : s)[static_cast<std::size_t>(feature % 12 / 4)];
     const Corners& t = of_m ? s : m;
     const Normal& n = of_m ? s_normal : m_normal;
-    if (feature % 4 == 0 && n == Normal{}) return INT32_MAX;  // a segment
-    if (feature % 4 == 0)
-      return above_face(p, t, n) ? quotient_of_root(dot(n, p - t[0]), square(n)) : INT32_MAX;
+    if (feature % 4 == 0)  // a segment has no face
+      return !(n == Normal{}) && above_face(p, t, n) ? quotient_of_root(dot(n, p - t[0]), square(n))
+                                                     : INT32_MAX;
     const auto e = static_cast<std::size_t>(feature % 4 - 1);
     const Quotient q = to_segment(p, t[e], t[(e + 1) % 3]);
     return root(static_cast<UWide>(q.num), static_cast<UWide>(q.den));
