@@ -227,9 +227,10 @@ class Summing {
   }
 
   /// Whether a point of a mobile triangle counts as inside the mock-up: what touches nothing is on one side
-  /// of it, with its first corner.
+  /// of it, with its first corner, if it is closed.
   bool counts_inside(std::uint32_t m, const Int3& point) const {
-    if (std::binary_search(out_.cmt.begin(), out_.cmt.end(), m)) return inside_mockup(frame_, point);
+    if (!frame_.mockup().closed || std::binary_search(out_.cmt.begin(), out_.cmt.end(), m))
+      return inside_mockup(frame_, point);
     return inside_mockup(frame_, transform(frame_.pose, frame_.tool_mesh().corner(m, 0)));
   }
 

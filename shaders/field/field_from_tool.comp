@@ -58,9 +58,9 @@ int32_t inside_mockup(ivec3 point) {
 
 int32_t inside_mockup(FieldPoint work) {
   take_pose(mobile_pose(work.triangle));
-  // What touches nothing is on one side of the mock-up, with its first corner.
-  const bool hit = (mobile_state[work.triangle] & kMobileHit) != 0u;
-  return inside_mockup(hit ? work.point
+  // What touches nothing is on one side of a closed mock-up, with its first corner.
+  const bool own = !CLOSED || (mobile_state[work.triangle] & kMobileHit) != 0u;
+  return inside_mockup(own ? work.point
                            : world_from_tool(tool_vertices(tool_triangles(mobile_id(work.triangle)).x)));
 }
 

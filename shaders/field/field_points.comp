@@ -2,7 +2,7 @@
 // kFieldTileLanes invocations: a tile of a tool triangle's samples, listed or a cell of its grid each at a
 // time, or of extra samples.
 // Lists the samples that weigh something; of the tool's grid those that lie in a V_bnd or V_int voxel of the
-// mock-up, or with their triangle's first corner where it touches nothing.
+// mock-up, or of a closed one with their triangle's first corner where it touches nothing.
 // Reads field_tiles, both bodies' extra samples, the tool in its own frame, the mock-up's partition. Writes
 // tool_points, mockup_points.
 // Before: field_members; its list is closed.
@@ -12,6 +12,7 @@
 #include "shaders/lib/voxel_range.glsl"
 #include "shaders/lib/sample.glsl"
 
+layout(constant_id = 0) const bool CLOSED = true;   // the mock-up
 layout(constant_id = 1) const bool LISTED = true;   // preparation has listed the tool's samples
 
 CONSTANT(kBindScene, SceneConstants, scene);
@@ -73,13 +74,13 @@ void take_listed(FieldTile tile) {
   const uint32_t mobile = mobile_id(tile.triangle);
   take_pose(mobile_pose(tile.triangle));
   const uint32_t base = tool_weights(mobile), level = tool_level();
-  const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
+  const bool own = !CLOSED || (mobile_state[tile.triangle] & kMobileHit) != 0u;
   const ivec3 corner = world_from_tool(tool_vertices(tool_triangles(mobile).x));
   for (uint32_t i = tile.begin + flat_invocation() % kFieldTileLanes; i < tile.end; i += kFieldTileLanes) {
     const uvec4 listed = tool_sample_points(i);
     const uint32_t weight = uint32_t(tool_weight(mobile, base, listed.w, level) >> 6);
     const ivec3 p = world_from_tool(ivec3(listed.xyz));
-    if (weight != 0u && mockup_class_of(mockup_voxel_of(hit ? p : corner)) != kVoxelExternal)
+    if (weight != 0u && mockup_class_of(mockup_voxel_of(own ? p : corner)) != kVoxelExternal)
       list_tool_point(FieldPoint(p, tile.triangle, weight));
   }
 }
@@ -92,7 +93,7 @@ void take_grid(FieldTile tile) {
   const int32_t axis = int32_t(tool_info(mobile) >> kInfoAxisShift & 3u), spacing = scene.sample_spacing;
   const SampledTriangle triangle = SampledTriangle(a, b, c, axis, raw_normal(a, b, c));
   const uint32_t base = tool_weights(mobile), level = tool_level();
-  const bool hit = (mobile_state[tile.triangle] & kMobileHit) != 0u;
+  const bool own = !CLOSED || (mobile_state[tile.triangle] & kMobileHit) != 0u;
   const ivec3 corner = world_from_tool(a);
   for (uint32_t cell = tile.begin + flat_invocation() % kFieldTileLanes; cell < tile.end;
        cell += kFieldTileLanes) {
@@ -102,7 +103,7 @@ void take_grid(FieldTile tile) {
     const uint32_t weight = uint32_t(tool_weight(mobile, base, level_of_cell(ij), level) >> 6);
     if (weight == 0u) continue;
     const ivec3 p = world_from_tool(sample_point(triangle, g));
-    if (mockup_class_of(mockup_voxel_of(hit ? p : corner)) == kVoxelExternal) continue;
+    if (mockup_class_of(mockup_voxel_of(own ? p : corner)) == kVoxelExternal) continue;
     list_tool_point(FieldPoint(p, tile.triangle, weight));
   }
 }

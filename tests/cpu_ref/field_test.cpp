@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "model/contact/field_response.h"
 #include "model/generate/solids.h"
@@ -155,6 +156,51 @@ TEST(Field, PushesASheetOutTheWayItCameIn) {
     EXPECT_TRUE((answer.flags & kFlagSheet) != 0);
     EXPECT_LT(angle_deg(answer.wrench.force, Vec3(0, 0, side)), 3);
   }
+}
+
+/// A block's surface with a square hole in its top, z = 0: what it has inside ends there, at no triangle.
+Mesh leaky_block(double half_hole) {
+  const double a = 20 * kMm;
+  Mesh mesh;
+  for (const auto& [r, z] : {std::pair{half_hole, 0.0}, {a, 0.0}, {a, -2 * a}})
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+      mesh.vertices.emplace_back(r * x, r * y, z);
+  const auto quad = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
+    mesh.triangles.push_back({p, q, r});
+    mesh.triangles.push_back({p, r, s});
+  };
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t j = (i + 1) % 4;
+    quad(4 + i, 4 + j, j, i);          // about the hole
+    quad(8 + i, 8 + j, 4 + j, 4 + i);  // a side
+  }
+  quad(8, 11, 10, 9);
+  mesh.parts = {{"leaky", 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
+  return mesh;
+}
+
+TEST(Field, OfAToolThatLeavesALeakyBodyHasNoStep) {
+  // A strip goes through the hole and touches nothing. Each of its samples leaves by itself, not the whole
+  // of it with a first corner.
+  Mesh strip;
+  strip.vertices = {Vec3(-0.5, 0, 5) * kMm, Vec3(-0.5, 0, -5) * kMm, Vec3(0.5, 0, -5) * kMm,
+                    Vec3(0.5, 0, 5) * kMm};
+  strip.triangles = {{0, 1, 2}, {0, 2, 3}};
+  strip.parts = {{"strip", 0, 2}};
+  BenchScene scene(leaky_block(1 * kMm), strip, voxels_of(2 * kMm));
+  ASSERT_FALSE(scene.geometry->mockup.closed);
+  double largest = 0, step = 0;
+  std::optional<Vec3> before;
+  for (int i = -55; i <= 55; ++i) {
+    const Vec3 force = scene.ask(Vec3(0.1, 0.2, 0.1 * i) * kMm).wrench.force;
+    EXPECT_TRUE(scene.contacts.cst.empty());
+    largest = std::max(largest, glm::length(force));
+    if (before) step = std::max(step, glm::length(force - *before));
+    before = force;
+  }
+  EXPECT_EQ(*before, Vec3(0)) << "it is out";
+  EXPECT_GT(largest, 1);
+  EXPECT_LT(step, 0.05 * largest);  // 20 rows of samples, and two rows
 }
 
 TEST(Field, OfASwallowedToolPointsTheNearestWayOut) {

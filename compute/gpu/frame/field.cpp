@@ -63,7 +63,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   };
   for (const ShaderPlan& made_for : std::initializer_list<ShaderPlan>{
            {out.members_, spirv::field_members, {{0, inside}, {1, listed}}},
-           {out.points_, spirv::field_points, {{1, listed}}},
+           {out.points_, spirv::field_points, {{0, mockup.closed}, {1, listed}}},
            {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}}, out.inside_},
            {out.from_tool_, spirv::field_from_tool, {{0, mockup.closed}, {1, inside}}},
            {out.result_, spirv::field_result},

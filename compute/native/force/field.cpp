@@ -444,14 +444,14 @@ void PressureField::sum_tool(const LatticePose& pose, std::span<const MobileResu
                            : ToolPart{static_cast<std::uint32_t>(mobiles.size()), 0};
   for (std::uint32_t i = begin.mobile; i < end.mobile || (i == end.mobile && end.sample != 0); ++i) {
     const MobileResult& result = mobiles[i];
-    // What touches nothing is on one side of the mock-up, with its first corner.
-    const bool hit = (result.state & kMobileHit) != 0;
+    // What touches nothing is on one side of a closed mock-up, with its first corner.
+    const bool each = !geometry_->mockup.closed || (result.state & kMobileHit) != 0;
     std::optional<bool> inside;
     const auto push = [&](const Int3& p, std::uint64_t weight_q30) {
       if (weight_q30 == 0) return;
       const Int3 point = transform(pose, p);
-      if (!hit && !inside) inside = lane.in_mockup.inside(transform(pose, own.corner(result.id, 0)));
-      if (hit ? lane.in_mockup.inside(point) : *inside)
+      if (!each && !inside) inside = lane.in_mockup.inside(transform(pose, own.corner(result.id, 0)));
+      if (each ? lane.in_mockup.inside(point) : *inside)
         push_from_tool(pose, result.id, point, weight_q30, lane);
     };
     int level = -1;  // of the sample before
