@@ -24,10 +24,27 @@ std::string place(const Vec3& p) { return fmt::format("{:.6g} {:.6g} {:.6g} m", 
 
 constexpr std::size_t kToldAreas = 3;  // chosen
 
+std::string in_touch(const SceneGeometry& geometry, const Contacts& contacts, Profile profile) {
+  const auto of = [](const MeshReport& report, const std::vector<std::uint32_t>& cut, const char* body) {
+    return cut.empty() ? std::string(body) : part_of(report, cut.front(), body);
+  };
+  const std::string sentence =
+      fmt::format("the tool starts in touch with {}, its part {} ({} {} of triangles)",
+                  of(geometry.mockup_report, contacts.cst, "the mock-up"),
+                  of(geometry.tool_report, contacts.cmt, "the tool"), contacts.pairs,
+                  contacts.pairs == 1 ? "pair" : "pairs");
+  return profile == Profile::kPaper
+             ? sentence
+             : sentence + ", but nothing of either lies in the other: nothing pushes it";
+}
+
 void tell_start(const LoadedScene& scene, const Contacts& contacts, const ContactResponse& response,
                 std::vector<std::string>& out) {
   const SceneGeometry& geometry = scene.geometry;
-  if (contacts.field.max_depth == 0) return;
+  if (contacts.field.max_depth == 0) {
+    if (contacts.contact) out.push_back(in_touch(geometry, contacts, scene.scene.response.profile));
+    return;
+  }
   const std::string tool = part_of(geometry.tool_report, contacts.field.deepest_mobile, "the tool");
   std::vector<std::size_t> deepest;
   for (std::size_t i = 0; i < response.areas.size(); ++i)
@@ -69,15 +86,17 @@ void tell_start(const LoadedScene& scene, const Contacts& contacts, const Contac
 Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend) {
   SceneTalk out;
   const SceneGeometry& geometry = scene.geometry;
-  if (scene.scene.response.profile != Profile::kRefined) return out;
+  const Profile profile = scene.scene.response.profile;
   const double stiffness = scene.scene.response.stiffness_n_per_m;
   const Result<LatticePose> pose = to_lattice(scene.scene.start, geometry);
   if (!pose) return pose.error();
   Contacts contacts;
   if (auto done = backend.query(*pose, nullptr, contacts); !done) return done.error();
   ContactResponse response;
-  respond(contacts, *pose, geometry, Profile::kRefined, stiffness, response);
+  respond(contacts, *pose, geometry, profile, stiffness, response);
   tell_start(scene, contacts, response, out.start);
+  out.free = !contacts.contact;
+  if (profile == Profile::kPaper) return out;
 
   if (!geometry.mockup.closed && backend.has_internal_voxels())
     out.bodies.push_back(

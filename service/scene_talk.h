@@ -7,12 +7,14 @@
 
 namespace palpate {
 
-/// What somebody should know of a scene before it is felt, a sentence each. Profile `refined`; for `paper`,
-/// which is the chapter's letter, nothing.
+/// What somebody should know of a scene before it is felt, a sentence each.
 struct SceneTalk {
-  std::vector<std::string> start;   ///< how deep the tool starts, where and between which parts
-  std::vector<std::string> bodies;  ///< whose inside is a majority vote, or whose walls are so thin that the
-                                    ///< device pushes through them
+  bool free = false;  ///< nothing touches the tool where it starts
+  /// How deep the tool starts, where and between which parts; of a contact without a depth, and in `paper`,
+  /// that it touches. Empty when it is free.
+  std::vector<std::string> start;
+  /// `refined`: whose inside is a majority vote, or whose walls are so thin that the device pushes through.
+  std::vector<std::string> bodies;
 };
 
 /// Asks `backend`, which is prepared for the scene, about the start pose; not while anything else asks it.

@@ -370,8 +370,10 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
     }
     nlohmann::ordered_json out{{"meshes", list}};
     for (const SceneInfo& scene : scenes)
-      out["scenes"].push_back(
-          {{"file", scene.file}, {"start", scene.talk.start}, {"bodies", scene.talk.bodies}});
+      out["scenes"].push_back({{"file", scene.file},
+                               {"free", scene.talk.free},
+                               {"start", scene.talk.start},
+                               {"bodies", scene.talk.bodies}});
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return failed ? Result<void>(*failed) : Result<void>();
   }
@@ -383,7 +385,7 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
   for (const SceneInfo& scene : scenes) {
     if (&scene != &scenes.front() || !infos.empty()) fmt::print("\n");
     fmt::print("{}\n  {:<12} {}\n", scene.file, "read", scene.prepared);
-    if (scene.talk.start.empty()) fmt::print("  {:<12} free: nothing pushes the tool\n", "start");
+    if (scene.talk.free) fmt::print("  {:<12} free: nothing touches the tool\n", "start");
     for (const std::string& sentence : scene.talk.start) fmt::print("  {:<12} {}\n", "start", sentence);
     for (const std::string& sentence : scene.talk.bodies) fmt::print("  {:<12} {}\n", "note", sentence);
   }

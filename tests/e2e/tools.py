@@ -1,4 +1,6 @@
 """`palpate info`, `generate`, `devices` and `plan`."""
+import re
+
 from harness import *
 
 STAGES = [
@@ -62,6 +64,53 @@ def test_info_for_people_says_the_same():
         and 'ball.stl' in outcome.out
         and '12' in outcome.out,
         outcome,
+    )
+
+
+def test_info_of_a_scene_says_how_the_tool_starts():
+    folder = Folder()
+    plate = [[(-0.05, 0, 0), (0.05, 0, 0), (0, 0.05, 0)]]
+    folder.write('sheet.stl', stl(plate))
+    folder.write('upright.stl', stl([[(x, z + 0.01, y - 0.02) for x, y, z in plate[0]]]))
+
+    def start_of(height, mockup='block.stl', tool='ball.stl', profile='refined'):
+        scene = folder.save(
+            static=[{'mesh': mockup, 'units': 'm', 'position': [0, 0, -height]}],
+            tool={'mesh': tool, 'units': 'm'},
+            response={'profile': profile},
+        )
+        outcome = palpate('info', scene, '--json')
+        expect(outcome.code == 0, outcome)
+        (told,) = json.loads(outcome.out)['scenes']
+        printed = [
+            line.removeprefix('  start').strip()
+            for line in palpate('info', scene).out.splitlines()
+            if line.startswith('  start')
+        ]
+        expect(
+            printed == (['free: nothing touches the tool'] if told['free'] else told['start']),
+            (printed, told),
+        )
+        return told
+
+    expect(start_of(0.03)['free'], 'a ball of 20 mm, 30 mm above')
+    expect(start_of(0.03, profile='paper')['free'], 'likewise')
+    pressed = start_of(0.018)
+    deep = re.match(
+        r"the tool starts (\S+) mm deep in 'block', its part 'ball', at .* -0\.018 m$", pressed['start'][0]
+    )
+    # 2 mm at the ball's pole; the deepest sample lies beside it.
+    expect(not pressed['free'] and deep and 1.9 < float(deep[1]) <= 2, pressed)
+    (letter,) = start_of(0.018, profile='paper')['start']
+    expect(letter.startswith("the tool starts in touch with 'block', its part 'ball' ("), letter)
+    sheets = start_of(0, 'sheet.stl', 'upright.stl')
+    expect(
+        sheets['start']
+        == [
+            "the tool starts in touch with 'sheet', its part 'upright' (1 pair of triangles), "
+            'but nothing of either lies in the other: nothing pushes it'
+        ],
+        sheets,
     )
 
 
