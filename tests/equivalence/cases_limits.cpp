@@ -411,6 +411,14 @@ Case deep_boxes_and_needles() {
     const Int3 a = low + 150, b = a + Int3(25, 0, 0), c = a + Int3(50, 1, 0);
     if (i % 4 == 0) append(tool, {{a, b, c}, {a, c, b}});
   }
+  // Where the search takes eight triangles at a time, some eights are of needles that lean to the axes and
+  // begin with their shorter edge, some of triangles of a step.
+  for (int i = 0; i < 16; ++i) {
+    const Int3 a = Int3(620, 620, -620) + 5 * Int3(i % 4, i / 4, i % 3), b = a + Int3(25, 25, 0),
+               c = a + Int3(50, 51, 0), p = Int3(-650, 640, 650) + Int3(0, 0, i);
+    append(tool, {{a, b, c}, {c, b, a}});
+    append(tool, {{p, p + Int3(1, 0, 0), p + Int3(0, 1, 0)}, {p, p + Int3(0, 1, 0), p + Int3(1, 0, 0)}});
+  }
   Case out = rule(
       "deep_boxes_and_needles", "a tool deep inside: IMT by whole bricks, but for what is collinear",
       box_of(Int3(-2560), Int3(2560)), tool, [](const SceneGeometry& geometry, Random& random, Known& known) {
@@ -425,10 +433,26 @@ Case deep_boxes_and_needles() {
   return out;
 }
 
+/// What is inside an open tool reaches out of its triangles, and out of their box: the mock-up's end is in
+/// there and near nothing.
+Case pole_in_an_open_cup() {
+  Triangles tool = box_of(Int3(-900, -300, -300), Int3(-300, 300, 300)),
+            cup = box_of(Int3(235, -55, -300), Int3(345, 55, 300));
+  cup.resize(10);  // less its top
+  append(tool, cup);
+  return rule("pole_in_an_open_cup", "EST and samples inside an open tool, beyond its box",
+              box_of(Int3(-20, -20, 0), Int3(20, 20, 2000)), tool,
+              [](const SceneGeometry&, Random& random, Known& known) {
+                known.pairs = Pairs{};
+                const auto beside = [&] { return random.between(-25, 25); };  // 10 steps from the walls
+                return unturned(Int3(beside() - 290, beside(), random.between(-400, 200)));
+              });
+}
+
 /// A tool that is flat along x in its own frame: its box has no size there.
 Case flat_tool() {
-  return rule("flat_tool", "a sheet in the plane of y and z as the tool", block(),
-              side_of(Int3(0, -300, -300), Int3(40, 300, 300), 0),
+  return rule("flat_tool", "a sheet in a plane of y and z as the tool", block(),
+              side_of(Int3(300, -300, -300), Int3(340, 300, 300), 0),
               [](const SceneGeometry& geometry, Random& random, Known&) {
                 return random_touching_pose(geometry, 0.5, random);
               });
@@ -458,6 +482,7 @@ std::vector<Case> limit_cases() {
           sheets_in_a_row(),
           large_sheet_among_small(),
           deep_boxes_and_needles(),
+          pole_in_an_open_cup(),
           flat_tool()};
 }
 

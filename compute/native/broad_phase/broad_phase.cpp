@@ -102,8 +102,8 @@ void BroadPhase::make_runs(const LatticeMesh& tool) {
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const double l = low[static_cast<int>(k)], h = high[static_cast<int>(k)];
-    whole_.centre[k] = l > h ? 0 : (l + h) / 2;
-    whole_.half[k] = l > h ? -1 : (h - l) / 2;
+    whole_.centre[k] = (l + h) / 2;
+    whole_.half[k] = (h - l) / 2;  // below 0: no triangle is left
   }
 }
 

@@ -187,9 +187,8 @@ void CandidateSamples::use(std::shared_ptr<const OpenInside> known, const Partit
   cells.solid = {may, all};
   cubes_ = std::move(cells);
   known_ = std::move(known);
-  if (!known_->near.empty())
-    use(Near{grid.origin, static_cast<double>(OpenInside::kNearParts) / grid.size,
-             OpenInside::kNearParts * grid.bricks, known_->near});
+  use(Near{grid.origin, static_cast<double>(OpenInside::kNearParts) / grid.size,
+           OpenInside::kNearParts * grid.bricks, known_->near});
 }
 
 CandidateSamples::Level CandidateSamples::make_level(const std::vector<std::uint8_t>& cubes,
