@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <cstring>
 #include <optional>
 
 #include "compute/native/broad_phase/turned_boxes.h"
 #include "compute/native/narrow_phase/crossing.h"
 #include "compute/native/processor.h"
 #include "compute/scene/exact.h"
+#include "compute/scene/search_tables.h"
 
 namespace palpate {
 
@@ -116,39 +119,55 @@ std::int16_t InsideSearch::winding_by_walks(const Int3& voxel) const {
   return static_cast<std::int16_t>(std::clamp(said[2], -30000, 30000));
 }
 
+/// Calls take(id) for what a V_bnd voxel lists and whose box there meets a box of parts. Sixteen at a time:
+/// the tables may be read beyond a list's end.
+template <class Take>
+void InsideSearch::for_listed(std::uint32_t boundary, const Parts& low, const Parts& high,
+                              Take&& take) const {
+  constexpr std::size_t kLanes = SearchTables::kBoxesAtOnce;
+  using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
+  using Halves = std::uint64_t __attribute__((vector_size(kLanes)));
+  const auto list = partition_->list(boundary);
+  const std::size_t count = list.size();
+  const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
+  Bytes least[3], most[3];
+  for (int k = 0; k < 3; ++k) {
+    least[k] = Bytes{} + static_cast<std::uint8_t>(std::clamp(low[k], 0, kVoxelParts - 1));
+    most[k] = Bytes{} + static_cast<std::uint8_t>(std::clamp(high[k], 0, kVoxelParts - 1));
+  }
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    Bytes lows[3], highs[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::memcpy(&lows[k], boxes + k * count + first, kLanes);
+      std::memcpy(&highs[k], boxes + (k + 3) * count + first, kLanes);
+    }
+    const auto meet = (Halves)((Bytes)(lows[0] <= most[0]) & (Bytes)(lows[1] <= most[1]) &
+                               (Bytes)(lows[2] <= most[2]) & (Bytes)(highs[0] >= least[0]) &
+                               (Bytes)(highs[1] >= least[1]) & (Bytes)(highs[2] >= least[2]));
+    for (std::size_t half = 0; half < 2; ++half)
+      for (std::uint64_t rest = meet[half] & 0x0101010101010101; rest != 0; rest &= rest - 1) {
+        const std::size_t i = first + 8 * half + static_cast<std::size_t>(std::countr_zero(rest)) / 8;
+        if (i < count) take(list[i]);
+      }
+  }
+}
+
 /// What the straight way from one end to the other, both in the voxel, crosses of what the voxel lists and
 /// what bounds a solid.
 int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& voxel,
                                  std::uint32_t boundary) const {
   const GridConstants& grid = partition_->grid();
-  const auto list = partition_->list(boundary);
-  const std::size_t count = list.size();
-  const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
-  std::int32_t low[3], high[3];  // of the way, in parts of the voxel, with a part to spare
+  Parts low, high;  // of the way, with a part to spare
   for (int k = 0; k < 3; ++k) {
     const double corner = grid.origin[k] + double(grid.size) * voxel[k];
     low[k] = static_cast<std::int32_t>((std::min(from[k], to[k]) - corner) * per_part_) - 1;
     high[k] = static_cast<std::int32_t>((std::max(from[k], to[k]) - corner) * per_part_) + 1;
   }
   int net = 0;
-  constexpr std::size_t kAtOnce = 64;
-  for (std::size_t first = 0; first < count; first += kAtOnce) {
-    const std::size_t some = std::min(kAtOnce, count - first);
-    std::uint8_t near[kAtOnce];
-    const std::uint8_t *lx = boxes + first, *ly = lx + count, *lz = ly + count, *hx = lz + count,
-                       *hy = hx + count, *hz = hy + count;
-    for (std::size_t i = 0; i < some; ++i)
-      near[i] = lx[i] <= high[0] && hx[i] >= low[0] && ly[i] <= high[1] && hy[i] >= low[1] &&
-                        lz[i] <= high[2] && hz[i] >= low[2]
-                    ? 1
-                    : 0;
-    for (std::size_t i = 0; i < some; ++i) {
-      if (near[i] == 0) continue;
-      const std::uint32_t id = list[first + i];
-      if (bounds_solid(*mesh_, id))
-        net += segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
-    }
-  }
+  for_listed(boundary, low, high, [&](std::uint32_t id) {
+    if (bounds_solid(*mesh_, id))
+      net += segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+  });
   return net;
 }
 
@@ -176,32 +195,20 @@ InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int 
 int InsideSearch::crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel,
                           std::uint32_t boundary, bool sheets) const {
   const GridConstants& grid = partition_->grid();
-  const auto list = partition_->list(boundary);
-  const std::size_t count = list.size();
-  const std::uint8_t* boxes = &boxes_[6 * std::size_t{partition_->list_begin(boundary)}];
-  const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-  const auto part = [&](int k) {
-    return static_cast<std::int32_t>((from[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_);
-  };
-  const std::int32_t at_u = part(u), at_v = part(v);
-  int net = 0;
-  constexpr std::size_t kAtOnce = 64;
-  for (std::size_t first = 0; first < count; first += kAtOnce) {
-    const std::size_t some = std::min(kAtOnce, count - first);
-    std::uint8_t near[kAtOnce];
-    const std::uint8_t *lu = boxes + static_cast<std::size_t>(u) * count + first, *hu = lu + 3 * count,
-                       *lv = boxes + static_cast<std::size_t>(v) * count + first, *hv = lv + 3 * count;
-    // A part to spare: both are rounded down, and a double's rounding may come out on either side of a part's
-    // border.
-    for (std::size_t i = 0; i < some; ++i)
-      near[i] = lu[i] <= at_u + 1 && hu[i] + 1 >= at_u && lv[i] <= at_v + 1 && hv[i] + 1 >= at_v ? 1 : 0;
-    for (std::size_t i = 0; i < some; ++i) {
-      if (near[i] == 0) continue;
-      const std::uint32_t id = list[first + i];
-      if (sheets || bounds_solid(*mesh_, id))
-        net += segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
-    }
+  // A part to spare: both are rounded down, and a double's rounding may come out on either side of a part's
+  // border.
+  Parts low(0), high(kVoxelParts - 1);
+  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
+    const auto part =
+        static_cast<std::int32_t>((from[k] - (grid.origin[k] + double(grid.size) * voxel[k])) * per_part_);
+    low[k] = part - 1;
+    high[k] = part + 1;
   }
+  int net = 0;
+  for_listed(boundary, low, high, [&](std::uint32_t id) {
+    if (sheets || bounds_solid(*mesh_, id))
+      net += segment_crossing(from, to, {mesh_->corner(id, 0), mesh_->corner(id, 1), mesh_->corner(id, 2)});
+  });
   return net;
 }
 

@@ -47,6 +47,9 @@ class InsideSearch {
   int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary,
               bool sheets) const;
   int crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const;
+  using Parts = Int3;  ///< of a voxel, from its low corner on: kVoxelParts a side
+  template <class Take>
+  void for_listed(std::uint32_t boundary, const Parts& low, const Parts& high, Take&& take) const;
   std::int16_t winding_by_walks(const Int3& voxel) const;
   std::uint8_t shortest_way(const Int3& voxel) const;
   int winding_of(const Int3& voxel);
