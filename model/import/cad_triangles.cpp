@@ -6,6 +6,7 @@
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
@@ -16,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "model/lattice/lattice_build.h"
 #include "model/mesh/weld.h"
@@ -68,27 +71,61 @@ class Triangulator {
   }
 
  private:
-  static std::size_t faces_without_triangles(const TopoDS_Shape& shape) {
-    std::size_t count = 0;
-    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-      TopLoc_Location location;
-      const Handle(Poly_Triangulation) triangulation =
-          BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
-      if (triangulation.IsNull() || triangulation->NbTriangles() == 0) ++count;
+  using Link = std::pair<int, int>;  ///< nodes of a triangulation, ascending
+
+  /// Whether a face's triangles end at its edges and nowhere else, but for what is as short as `least`.
+  static bool is_covered(const TopoDS_Face& face, double least) {
+    TopLoc_Location location;
+    const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+    if (triangulation.IsNull() || triangulation->NbTriangles() == 0) return false;
+    std::vector<Link> sides, border;  // of triangles; of the face
+    const auto add = [&](std::vector<Link>& to, int a, int b) {
+      if (triangulation->Node(a).Distance(triangulation->Node(b)) > least)
+        to.emplace_back(std::min(a, b), std::max(a, b));
+    };
+    for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
+      int a = 0, b = 0, c = 0;
+      triangulation->Triangle(i).Get(a, b, c);
+      add(sides, a, b);
+      add(sides, b, c);
+      add(sides, c, a);
     }
+    for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+      const Handle(Poly_PolygonOnTriangulation) edge =
+          BRep_Tool::PolygonOnTriangulation(TopoDS::Edge(it.Current()), triangulation, location);
+      if (edge.IsNull()) continue;  // a cone's tip, or the like
+      for (int i = 1; i < edge->NbNodes(); ++i) add(border, edge->Node(i), edge->Node(i + 1));
+    }
+    std::sort(sides.begin(), sides.end());
+    std::sort(border.begin(), border.end());
+    for (auto side = sides.begin(); side != sides.end();) {
+      const auto next = std::find_if(side, sides.end(), [&](const Link& other) { return other != *side; });
+      if (next - side == 1 && !std::binary_search(border.begin(), border.end(), *side)) return false;
+      side = next;
+    }
+    return std::all_of(border.begin(), border.end(), [&](const Link& wanted) {
+      return std::binary_search(sides.begin(), sides.end(), wanted);
+    });
+  }
+
+  static std::size_t faces_not_covered(const TopoDS_Shape& shape, double least) {
+    std::size_t count = 0;
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next())
+      if (!is_covered(TopoDS::Face(it.Current()), least)) ++count;
     return count;
   }
 
-  /// The shape, or one of the same form that the library can make triangles of: it fails on some cones, and
-  /// not where they are spline surfaces.
+  /// The shape, or one of the same form that the library can make triangles of: of some cones it makes none,
+  /// or leaves a part out, but not where they are spline surfaces.
   static TopoDS_Shape with_triangles(const TopoDS_Shape& shape, const IMeshTools_Parameters& parameters) {
     const BRepMesh_IncrementalMesh made(shape, parameters);
-    const std::size_t without = faces_without_triangles(shape);
-    if (without == 0) return shape;
+    const double least = parameters.Deflection / 1000;  // chosen: far below what triangles are off by
+    const std::size_t wanting = faces_not_covered(shape, least);
+    if (wanting == 0) return shape;
     try {
       const TopoDS_Shape splines = BRepBuilderAPI_NurbsConvert(shape, true).Shape();
       const BRepMesh_IncrementalMesh made_anew(splines, parameters);
-      return faces_without_triangles(splines) < without ? splines : shape;
+      return faces_not_covered(splines, least) < wanting ? splines : shape;
     } catch (const Standard_Failure&) {
       return shape;
     }
