@@ -35,7 +35,7 @@ std::string in_touch(const SceneGeometry& geometry, const Contacts& contacts, Pr
                   contacts.pairs == 1 ? "pair" : "pairs");
   return profile == Profile::kPaper
              ? sentence
-             : sentence + ", but nothing of either lies in the other: nothing pushes it";
+             : sentence + ", but no sample of either lies in the other: nothing pushes it";
 }
 
 void tell_start(const LoadedScene& scene, const Contacts& contacts, const ContactResponse& response,

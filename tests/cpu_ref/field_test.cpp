@@ -200,7 +200,7 @@ TEST(Field, OfAToolThatLeavesALeakyBodyHasNoStep) {
   }
   EXPECT_EQ(*before, Vec3(0)) << "it is out";
   EXPECT_GT(largest, 1);
-  EXPECT_LT(step, 0.05 * largest);  // 20 rows of samples, and two rows
+  EXPECT_LT(step, 0.05 * largest);  // one of 20 rows of samples
 }
 
 TEST(Field, OfASwallowedToolPointsTheNearestWayOut) {

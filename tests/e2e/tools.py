@@ -108,7 +108,7 @@ def test_info_of_a_scene_says_how_the_tool_starts():
         sheets['start']
         == [
             "the tool starts in touch with 'sheet', its part 'upright' (1 pair of triangles), "
-            'but nothing of either lies in the other: nothing pushes it'
+            'but no sample of either lies in the other: nothing pushes it'
         ],
         sheets,
     )
