@@ -445,7 +445,7 @@ Case pole_in_an_open_cup() {
               [](const SceneGeometry&, Random& random, Known& known) {
                 known.pairs = Pairs{};
                 const auto beside = [&] { return random.between(-25, 25); };  // 10 steps from the walls
-                return unturned(Int3(beside() - 290, beside(), random.between(-400, 200)));
+                return unturned(Int3{beside() - 290, beside(), random.between(-400, 200)});
               });
 }
 

@@ -21,7 +21,7 @@ using Corners = std::array<Vec, 3>;
 
 cpu_ref::Triangle random_triangle(equivalence::Random& random, std::int32_t size, std::int32_t far) {
   const auto point = [&](std::int32_t most) {
-    return Int3(random.between(-most, most), random.between(-most, most), random.between(-most, most));
+    return Int3{random.between(-most, most), random.between(-most, most), random.between(-most, most)};
   };
   for (;;) {  // none that is collapsed
     const Int3 at = point(far);

@@ -63,7 +63,7 @@ struct Scene {
   /// Anywhere in the mock-up's box, or up to so many of its longest side beyond.
   Vec3 place(equivalence::Random& random, double beyond) const {
     const Vec3 more(beyond * longest()), from = low() - more, to = high() + more;
-    return from + (to - from) * Vec3(random.unit(), random.unit(), random.unit());
+    return from + (to - from) * Vec3{random.unit(), random.unit(), random.unit()};
   }
   /// Whether a place lies in its box; beyond, a place is as far as the way to the box makes it.
   bool holds(const Vec3& p) const { return glm::clamp(p, low(), high()) == p; }
@@ -211,7 +211,7 @@ TEST(RoomField, TellsWholeTrianglesApart) {
       exact::Corners triangle;
       for (int c = 0; c < 3; ++c)
         triangle[static_cast<std::size_t>(c)] =
-            Int3(at + size * Vec3(random.unit(), random.unit(), random.unit()));
+            Int3(at + size * Vec3{random.unit(), random.unit(), random.unit()});
       const double steps = (random.below(3) == 0 ? 8 : cell * random.unit());
       const bool told = scene.field.all_beyond(triangle, steps);
       const double corner = scene.distance(Vec3(triangle[0]));
