@@ -134,7 +134,7 @@ class CollisionBackend : public PoseQuery {
   /// (kUsage): this engine measures none.
   virtual Result<void> clearance(const LatticePose&, std::int32_t within, Clearance& out) {
     (void)within, (void)out;
-    return Error{ErrorCode::kUsage, "the " + name() + " engine measures no distances"};
+    return Error{ErrorCode::kUsage, "the " + name() + " engine measures no distances; cpu and ref do"};
   }
 
   /// For how long, to the motion's end at most, a tool that has come to a time of it stays free for certain,

@@ -80,6 +80,7 @@ void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeome
                   pose.translation[r];
   out.gc = to_metres(lattice, gc_steps);
   out.wrench = {};
+  out.max_depth = 0;
   out.felt.reset();
   out.flags = contacts.flags;
   out.contact = contacts.contact;
@@ -104,6 +105,7 @@ void respond(const Contacts& contacts, const LatticePose& pose, const SceneGeome
     out.wrench.torque += response.torque;
   }
   if (profile == Profile::kPaper) return;
+  out.max_depth = lattice.step_m * contacts.field.max_depth;
   out.wrench = field_wrench(contacts.field, pose, geometry, stiffness, out.gc);
   field_planes(contacts.field, pose, geometry, stiffness, out.gc, out.planes);
   if (!contacts.contact_points) out.wrench.torque = Vec3(0);

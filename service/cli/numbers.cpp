@@ -31,9 +31,10 @@ std::string bytes_text(std::uint64_t bytes) {
 
 std::string length_text(double m) {
   if (m == 0) return "0";
-  return m >= 1e-3   ? fmt::format("{:.4g} mm", m * 1e3)
-         : m >= 1e-6 ? fmt::format("{:.3g} µm", m * 1e6)
-                     : fmt::format("{:.3g} nm", m * 1e9);
+  // 999.5 rounds to 1,000, which is one of the next unit.
+  return m >= 0.9995e-3   ? fmt::format("{:.4g} mm", m * 1e3)
+         : m >= 0.9995e-6 ? fmt::format("{:.3g} µm", m * 1e6)
+                          : fmt::format("{:.3g} nm", m * 1e9);
 }
 
 }  // namespace palpate

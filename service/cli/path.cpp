@@ -10,8 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "model/files/path_file.h"
-#include "model/scene/scene_file.h"
 #include "service/cli/console.h"
 #include "service/cli/numbers.h"
 #include "service/cli/output_folder.h"
@@ -31,7 +29,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPathFooter =
     R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
 (pose, with its fraction on the way to the next; parts), least clearance (at the poses of a clear path, 0 where one touches within the tolerance; else 0, at the first contact), worst depth at the poses (null: none touches),
-the parts that touch at a pose or at a first contact between two, by name, and what was examined. A first contact is never late, and early by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
+the parts that touch at a pose or at a first contact between two, by name, and what was examined; with --tolerance also how many poses have a contact that does not count, and at how many of them no depth is known, for neither body has a sample in the other (sheets, surfaces that coincide). A first contact is never late, and early by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
 Exit codes: 0 the path is clear, 5 it is not, others as ever. A path of which nothing was examined is an error, never clear.
 
 Examples:
@@ -59,6 +57,8 @@ Json json_of(const LoadedScene& scene, const PathReport& report, const std::stri
                             {"at", pose_json(*report.first_pose)},
                             {"tool_part", report.first_tool},
                             {"static_part", report.first_static}};
+  if (report.first_screw && report.moments[*report.first_screw].undecided)
+    out["first_contact"]["undecided"] = true;
   out["least_clearance_m"] = out["closest_pose"] = nullptr;
   if (!report.clear()) {  // wherever poses lie, no room is left where the tool touches
     out["least_clearance_m"] = 0.0;
@@ -73,6 +73,8 @@ Json json_of(const LoadedScene& scene, const PathReport& report, const std::stri
   out["worst_depth_m"] = report.deepest ? Json(*report.moments[*report.deepest].depth_m) : Json(nullptr);
   out["deepest_pose"] = report.deepest ? Json(*report.deepest) : Json(nullptr);
   out["touching"] = {{"static", report.static_parts}, {"tool", report.tool_parts}};
+  if (report.rule.tolerance > 0)
+    out["tolerated"] = {{"poses", report.tolerated}, {"without_depth", report.without_depth}};
   out["tolerance_m"] = report.rule.tolerance * step;
   out["early_m"] = report.rule.early * step;
   out["examined"] = {{"poses", report.moments.size()},
@@ -130,32 +132,11 @@ std::string csv_of(const LoadedScene& scene, const PathReport& report) {
   return out;
 }
 
-/// World from tool: of a list of poses, or of a path as a scene's device has it, along the scene's guide if
-/// it is guided.
-Result<std::vector<Pose>> poses_of(const PathOptions& options) {
-  const std::optional<bool> guided = guided_header(options.path);
-  if (!guided) return read_poses(options.path);
-  const auto path = read_path(options.path, *guided);
-  if (!path) return path.error();
-  std::vector<GuidePoint> guide;
-  if (*guided) {
-    auto scene = read_scene(options.common.scene);
-    if (!scene) return scene.error();
-    guide = std::move(scene->device.guide);
-    if (guide.empty())
-      return bad_value(options.path + ": the path is along a guide, and " + options.common.scene +
-                       " names none");
-  }
-  std::vector<Pose> out;
-  for (const PathPoint& point : *path) out.push_back(path_pose(point, guide));
-  return out;
-}
-
 Result<void> path_command(const PathOptions& options, const Parts& parts) {
   if (!options.out.empty())
     if (auto done = check_output_folder(options.out, kPathFiles, "a path's", options.overwrite); !done)
       return done;
-  auto poses = poses_of(options);
+  auto poses = read_poses_of_scene(options.path, options.common.scene);
   if (!poses) return poses.error();
   if (poses->empty())
     return bad_value(options.path + ": the file has no pose, so there is nothing to examine");
@@ -172,6 +153,13 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
   console.finish();
   if (!report) return report.error();
   for (const std::string& note : backend.take_notes()) console.note(note);
+  if (report->without_depth > 0)
+    console.note(
+        fmt::format("at {} of {} poses triangles meet and no sample of either body lies in the other, so "
+                    "that there is no "
+                    "depth to hold against the tolerance and the contact does not count: sheets, or surfaces "
+                    "that coincide",
+                    report->without_depth, report->moments.size()));
   const std::string engine =
       backend.name() + " on " + backend.device() +
       (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());
@@ -195,6 +183,12 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
       json_of(scene, *report, engine, false).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (auto printed = print_text(line); !printed) return printed;
   if (report->clear()) return {};
+  if (report->moments[*report->first_screw].undecided)
+    return Error{
+        ErrorCode::kNotClear,
+        fmt::format("{}: whether the tool touches between pose {} and pose {} is not decided: it is "
+                    "clear up to {:.6f} of the way, and goes on so near that more was not examined",
+                    options.path, *report->first_screw - 1, *report->first_screw, report->first_time)};
   return Error{
       ErrorCode::kNotClear,
       *report->first_screw == 0

@@ -7,9 +7,13 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "model/files/one_line.h"
+#include "model/files/path_file.h"
+#include "model/scene/scene_file.h"
 #include "model/scene/scene_geometry.h"
 
 namespace palpate {
@@ -95,6 +99,24 @@ Result<std::vector<Pose>> read_poses(const std::string& path) {
   std::ifstream in(path);
   if (!in) return bad_value(fmt::format("{}: the poses file can't be opened", path));
   return read_poses(in, path);
+}
+
+Result<std::vector<Pose>> read_poses_of_scene(const std::string& path, const std::string& scene_file) {
+  const std::optional<bool> guided = guided_header(path);
+  if (!guided) return read_poses(path);
+  const auto points = read_path(path, *guided);
+  if (!points) return points.error();
+  std::vector<GuidePoint> guide;
+  if (*guided) {
+    auto scene = read_scene(scene_file);
+    if (!scene) return scene.error();
+    guide = std::move(scene->device.guide);
+    if (guide.empty())
+      return bad_value(fmt::format("{}: the path is along a guide, and {} names none", path, scene_file));
+  }
+  std::vector<Pose> out;
+  for (const PathPoint& point : *points) out.push_back(path_pose(point, guide));
+  return out;
 }
 
 Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& path) {

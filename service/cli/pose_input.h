@@ -19,7 +19,11 @@ Result<Pose> parse_pose(const std::string& text);
 /// line, and how many there are.
 Result<std::vector<Pose>> read_poses(const std::string& path);
 
-/// The same from a stream that sentences call `name`.
+/// The same, and the path of a guided scene, whose poses lie along the guide that the scene file names.
+/// Further errors: there is none, the scene's own.
+Result<std::vector<Pose>> read_poses_of_scene(const std::string& path, const std::string& scene_file);
+
+/// read_poses() from a stream that sentences call `name`.
 Result<std::vector<Pose>> read_poses(std::istream& in, const std::string& name);
 
 /// x y z qx qy qz qw as a pose. Error (kBadValue): a clause that says why it is none.

@@ -52,7 +52,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     if (!pose) return pose.error();
     poses.push_back(*pose);
   } else {
-    Result<std::vector<Pose>> read = read_poses(*options.poses);
+    Result<std::vector<Pose>> read = read_poses_of_scene(*options.poses, options.common.scene);
     if (!read) return read.error();
     poses = std::move(*read);
   }

@@ -409,9 +409,9 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
                          : std::string()));
   if (out.coarse_frames > 0)
     note(std::to_string(out.coarse_frames) + " of " + std::to_string(out.frames) +
-         " frames were sampled coarser than their contact asks for, at 1/" +
-         number(std::round(10 / out.coarsest_share) / 10) +
-         " of the samples at the least, to take no longer than response.budget_us, " +
+         " frames were sampled coarser than their contact asks for, with " +
+         number(std::floor(100 * out.coarsest_share)) +
+         " % of the samples at the least, to take no longer than response.budget_us, " +
          number(run.scene.response.budget_us) + " us");
   if (out.no_direction_frames > 0) {
     note(std::to_string(out.no_direction_frames) +
@@ -442,9 +442,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
     note("from tick " + std::to_string(change.tick) + " on it answered in profile " + change.profile +
          ", law " + change.law);
   if (out.stopped)
-    note("the run was stopped at tick " + std::to_string(out.ticks) +
-         (run.ticks == kForever ? "" : ", before its end at tick " + std::to_string(run.ticks)) +
-         ", with zero force");
+    note("the run was stopped after " + std::to_string(out.ticks) + " ticks" +
+         (run.ticks == kForever ? "" : " of " + std::to_string(run.ticks)) + ", with zero force");
   if (out.watchdog_ticks > 0)
     note("results came more than " + number(run.scene.control.watchdog_ms) + " ms apart in " +
          std::to_string(out.watchdog_ticks) + " ticks: the watchdog faded the force out");

@@ -37,6 +37,8 @@ Result<FreeTime> free_time_with_tolerance(CollisionBackend& backend, const Latti
   double room = rule.tolerance - kMotionSlack;  // steps
   if (touch->depth >= 0) {
     room -= static_cast<double>(touch->depth);
+    out.static_id = touch->static_id;
+    out.mobile_id = touch->mobile_id;
   } else {
     Clearance near;
     const double reach = std::min(std::max(speed * longest - room, 0.0) + 1, 0x1p30);
@@ -70,8 +72,10 @@ Result<Touch> touch_at(CollisionBackend& backend, const LatticePose& pose, const
   if (contacts.truncated)
     return Error{ErrorCode::kInternal,
                  std::string("a frame had too little room for ") + contacts.truncated_capacity};
-  return Touch{contacts.field.max_depth > static_cast<std::uint32_t>(rule.tolerance),
-               contacts.field.max_depth};
+  const FieldSums& field = contacts.field;
+  Touch out{field.max_depth > static_cast<std::uint32_t>(rule.tolerance), field.max_depth};
+  if (field.max_depth > 0) out.static_id = field.deepest_static, out.mobile_id = field.deepest_mobile;
+  return out;
 }
 
 Result<FirstContact> first_contact(CollisionBackend& backend, const SceneGeometry& geometry, const Pose& from,

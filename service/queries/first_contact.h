@@ -46,6 +46,8 @@ Result<FirstContact> first_contact(CollisionBackend& backend, const SceneGeometr
 struct Touch {
   bool touches = false;
   std::int64_t depth = -1;
+  std::uint32_t static_id = kNoTriangle,
+                mobile_id = kNoTriangle;  ///< of the deepest sample; kNoTriangle: none lies in the other body
 };
 /// Whether the tool touches at a pose, and how deep, by a rule.
 Result<Touch> touch_at(CollisionBackend& backend, const LatticePose& pose, const TouchRule& rule);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -170,6 +171,7 @@ void LoneQuery::begin(const Pose& pose, const ContactResponse& at_pose, bool fro
   apart_ = {};
   rest_ = pull(at_pose.wrench, apart_);
   image_ = best_ = next(apart_);
+  farthest_ = farthest(at_pose);
   left_ = least_ = halved_ = anderson_.length(plus(image_, -1, apart_));
   idle_ = 0;
   if (first)
@@ -184,6 +186,15 @@ bool LoneQuery::found() const { return least_ <= kFoundM + kFound * anderson_.le
 
 bool LoneQuery::settled() const { return left_ <= enough_ + enough_share_ * anderson_.length(image_); }
 
+/// How far a step may lead from where the field is as it says, m: as far as the deepest sample lies. What
+/// pushes further on is another wall, of which planes know nothing, and behind it is another balance; but
+/// what is thinner than samples lie apart is passed. Where nothing pushes the spring leads back: as far as it
+/// likes.
+double LoneQuery::farthest(const ContactResponse& at) const {
+  if (at.planes.empty()) return std::numeric_limits<double>::infinity();
+  return std::max(at.max_depth, geometry_.lattice.step_m * geometry_.sample_spacing);
+}
+
 void LoneQuery::begin_step() {
   if (settled() || felt_.evaluations >= kMostEvaluations || (idle_ >= kMostIdle && found())) {
     finish();
@@ -192,6 +203,8 @@ void LoneQuery::begin_step() {
   way_ = plus(image_, -1, apart_);
   step_ = plus(anderson_.next(apart_, image_), -1, apart_);
   if (!(anderson_.product(rest_, step_) > 0)) step_ = way_;
+  if (const double goes = anderson_.length(step_); goes > farthest_)
+    for (double& one : step_) one *= farthest_ / goes;
   // `rest_` is minus the slope of E + ½ spring. A step is taken that leads to half as much left or goes on
   // downhill; else the lowest place is looked for along it (regula falsi, Illinois): planes that are left too
   // far are forgotten, and a step may go right through a wall.
@@ -214,6 +227,7 @@ void LoneQuery::take(const ContactResponse& there) {
     rest_ = rest_there;
     image_ = image_there;
     left_ = left_there;
+    farthest_ = farthest(there);
     begin_step();
   };
   const bool nearer = left_there < least_;

@@ -43,8 +43,8 @@ class Anderson {
 /// (service/loop/virtual_coupling.h).
 ///
 /// The field's planes at a pose give the next one, as in the law; Anderson's method makes up for what planes
-/// leave out. From the pose asked for on, so of several balances it finds the one that a hand at rest there
-/// would. One thread; allocates only as its answers grow.
+/// leave out. From the pose asked for on, in steps no longer than the contact is deep, so of several balances
+/// it finds the one that a hand at rest there would. One thread; allocates only as its answers grow.
 class LoneQuery {
  public:
   static constexpr int kMostEvaluations = 60;  ///< from 2 for a flat contact to 20 for a pose far deeper than
@@ -84,6 +84,7 @@ class LoneQuery {
   Vec6 next(const Vec6& apart) const;
   bool settled() const;
   bool found() const;
+  double farthest(const ContactResponse& at) const;
   void begin_step();
   void want(const Vec6& apart, Stage stage);
   void finish();
@@ -105,8 +106,9 @@ class LoneQuery {
   Anderson anderson_;
   Vec6 apart_{}, rest_{}, image_{}, best_{};
   double left_ = 0, least_ = 0;
-  double halved_ = 0;  ///< least_ when it last was half of what it had been
-  int idle_ = 0;       ///< evaluations since
+  double farthest_ = 0;  ///< that a step from apart_ may lead, m
+  double halved_ = 0;    ///< least_ when it last was half of what it had been
+  int idle_ = 0;         ///< evaluations since
   // Of its present step.
   Vec6 way_{}, step_{};
   double slope_here_ = 0, low_ = 0, low_slope_ = 0, high_ = 0, high_slope_ = 0, share_ = 1;

@@ -52,6 +52,10 @@ Result<PathReport> check_path(const LoadedScene& scene, CollisionBackend& backen
       moment.depth_m = contacts.field.max_depth * step;
       moment.touches =
           rule.tolerance == 0 || contacts.field.max_depth > static_cast<std::uint32_t>(rule.tolerance);
+      if (!moment.touches) {
+        ++out.tolerated;
+        if (contacts.field.max_depth == 0) ++out.without_depth;
+      }
       if (contacts.field.max_depth > 0) {
         moment.static_part = part_of(geometry.mockup_report, contacts.field.deepest_static);
         moment.tool_part = part_of(geometry.tool_report, contacts.field.deepest_mobile);

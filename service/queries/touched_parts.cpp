@@ -28,6 +28,8 @@ TouchedParts::TouchedParts(const SceneGeometry& geometry)
 std::vector<std::string> TouchedParts::statics(const Contacts& contacts) const {
   std::vector<bool> touched(static_.ends.size());
   static_.mark(contacts.cst, touched);
+  static_.mark(contacts.est, touched);
+  if (contacts.field.max_depth > 0) static_.mark({contacts.field.deepest_static}, touched);
   for (const ContactArea& area : contacts.areas) static_.mark(area.static_ids, touched);
   return static_.names(touched);
 }
@@ -35,6 +37,8 @@ std::vector<std::string> TouchedParts::statics(const Contacts& contacts) const {
 std::vector<std::string> TouchedParts::mobiles(const Contacts& contacts) const {
   std::vector<bool> touched(mobile_.ends.size());
   mobile_.mark(contacts.cmt, touched);
+  mobile_.mark(contacts.imt, touched);
+  if (contacts.field.max_depth > 0) mobile_.mark({contacts.field.deepest_mobile}, touched);
   for (const ContactArea& area : contacts.areas) mobile_.mark(area.mobile_ids, touched);
   return mobile_.names(touched);
 }

@@ -14,10 +14,10 @@ class TouchedParts {
   /// `geometry` outlives it.
   explicit TouchedParts(const SceneGeometry& geometry);
 
-  /// Paths of the parts whose triangles are in contact: of CST and the areas, of CMT and the areas; each
-  /// once, in the order of the scene.
+  /// Paths of the parts whose triangles are in contact: of CST, EST and the areas, and what the deepest
+  /// sample of the tool lies in; each once, in the order of the scene.
   std::vector<std::string> statics(const Contacts& contacts) const;
-  /// Paths of the tool's parts, likewise.
+  /// Paths of the tool's parts, likewise: of CMT, IMT and the areas, and what the mock-up's deepest lies in.
   std::vector<std::string> mobiles(const Contacts& contacts) const;
 
  private:

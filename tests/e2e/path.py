@@ -182,6 +182,103 @@ def test_verdicts_of_poses_are_the_same_of_both_engines():
         expect(abs(math.hypot(*gap) - 0.005) < 1e-7 and lines[0]['parts']['static'], lines[0])
 
 
+def scene_of(folder, tool, **statics):
+    """A scene of triangles by name."""
+    for name, triangles in {'tool': tool, **statics}.items():
+        (pathlib.Path(folder) / f'{name}.stl').write_bytes(stl(triangles))
+    scene = pathlib.Path(folder) / 'scene.json'
+    meshes = [{'mesh': f'{name}.stl', 'units': 'm'} for name in statics]
+    scene.write_text(json.dumps({'static': meshes, 'tool': {'mesh': 'tool.stl', 'units': 'm'}}))
+    return scene
+
+
+def test_with_a_tolerance_a_path_names_what_comes_together_first():
+    with tempfile.TemporaryDirectory() as folder:
+        scene = scene_of(
+            folder,
+            sphere(0.01),
+            block=box((0.1, 0.1, 0.02), (0, 0, -0.01)),
+            floor=box((0.1, 0.1, 0.02), (0, 0, -0.11)),
+        )
+        # The last pose is in the air, nearer to the floor.
+        done = palpate('path', scene, poses(folder, 0.05, -0.08), '--tolerance', '0.001')
+        report = json.loads(done.out)
+        expect(done.code == 5 and abs(report['first_contact']['pose'] - 0.041 / 0.13) < 1e-3, done)
+        expect('block' in report['first_contact']['static_part'], report)
+        expect(report['touching']['static'] == [report['first_contact']['static_part']], report)
+        expect(report['touching']['tool'] == [report['first_contact']['tool_part']], report)
+
+
+def test_a_contact_without_a_depth_is_told_where_a_tolerance_leaves_it_out():
+    with tempfile.TemporaryDirectory() as folder:
+        plate = box((0.02, 0.02, 0.002))
+        path = pathlib.Path(folder) / 'path.csv'
+        path.write_text(HEADER + '0,0,0.01,0,0,0,1\n0,0,0,0,0,0,1\n')
+        done = palpate('path', scene_of(folder, plate, same=plate), path, '--tolerance', '5e-5')
+        report = json.loads(done.out)
+        expect(done.code == 0 and report['tolerated'] == {'poses': 1, 'without_depth': 1}, done)
+        expect('at 1 of 2 poses' in done.err and 'no depth' in done.err, done)
+        done = palpate(
+            'path',
+            scene_of(folder, sphere(0.01), block=box((0.1, 0.1, 0.02), (0, 0, -0.01))),
+            poses(folder, 0.02, 0.0099),
+            '--tolerance',
+            '0.001',
+        )
+        report = json.loads(done.out)
+        expect(done.code == 0 and report['tolerated'] == {'poses': 1, 'without_depth': 0}, done)
+        expect('no depth' not in done.err, done)
+
+
+def test_what_is_not_decided_is_not_called_a_touch():
+    with tempfile.TemporaryDirectory() as folder:
+        done = palpate('path', ball_over_a_block(folder), poses(folder, 1e9, -1e9))
+        expect(done.code == 5 and 'is not decided' in done.err and 'touches between' in done.err, done)
+        expect(json.loads(done.out)['first_contact']['undecided'] is True, done)
+
+
+def test_parts_are_named_where_one_body_lies_wholly_in_the_other():
+    with tempfile.TemporaryDirectory() as folder:
+        large, small = box((0.06, 0.06, 0.06)), box((0.01, 0.01, 0.01))
+        for tool, static in ((small, large), (large, small)):
+            scene = scene_of(folder, tool, other=static)
+            for backend in ('cpu', 'ref'):
+                line = lines_of(
+                    palpate(
+                        'query',
+                        scene,
+                        '--pose',
+                        '.004 .002 .001 0 0 0 1',
+                        '--names',
+                        '--json',
+                        '--backend',
+                        backend,
+                    )
+                )[0]
+                expect(line['contact'] and line['pairs'] == 0, line)
+                expect(len(line['parts']['static']) == 1 and len(line['parts']['tool']) == 1, line)
+
+
+def test_a_guided_path_is_asked_of_as_a_list_of_poses_is():
+    with tempfile.TemporaryDirectory() as folder:
+        made = palpate(
+            'generate',
+            'disassembly',
+            '--triangles',
+            '4000',
+            '--tool-triangles',
+            '500',
+            '--out',
+            folder + '/g',
+        )
+        expect(made.code == 0, made)
+        scene, path = folder + '/g/scene.json', pathlib.Path(folder + '/g/path.csv')
+        expect('travel_m' in path.read_text().splitlines()[0], path.read_text()[:80])
+        told = lines_of(palpate('query', scene, '--poses', path, '--any'))
+        expect(len(told) == len(path.read_text().splitlines()) - 1, len(told))
+        expect({line['touches'] for line in told} == {True, False}, told[:3])
+
+
 def test_what_examines_nothing_is_an_error_and_never_clear():
     with tempfile.TemporaryDirectory() as folder:
         scene = ball_over_a_block(folder)

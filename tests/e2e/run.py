@@ -205,10 +205,8 @@ def test_an_interrupt_ends_a_real_time_run_with_whole_files():
         expect(rows.endswith('\n') and rows.count('\n') > 100, 'whole rows')
         summary = json.loads((out / 'summary.json').read_text())
         expect(summary['ticks'] == rows.count('\n') - 1, 'summary')
-        expect(
-            summary['stopped'] and any('was stopped at tick' in note for note in summary['notes']), summary
-        )
-        expect('was stopped at tick' in (out / 'report.html').read_text(), 'nobody takes it for a whole run')
+        expect(summary['stopped'] and any('was stopped after' in note for note in summary['notes']), summary)
+        expect('was stopped after' in (out / 'report.html').read_text(), 'nobody takes it for a whole run')
         expect((out / 'report.html').read_text().rstrip().endswith('</html>'), 'report')
 
 

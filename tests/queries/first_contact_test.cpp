@@ -286,6 +286,8 @@ TEST(Tolerance, LetsAContactShallowerThanItPass) {
       first_contact(*native, geometry, pose_at(Vec3(0, 0, 0.002)), pose_at(Vec3(0, 0, -0.002)), rule);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->kind, FirstContact::Kind::kContact);
+  EXPECT_LT(found->static_id, geometry.mockup.triangles.size());
+  EXPECT_LT(found->mobile_id, geometry.tool.triangles.size());
   const double depth = 0.004 * found->time - 0.002;
   EXPECT_LE(depth, 100e-6 + 4 * step) << "late";
   EXPECT_GE(depth, 100e-6 - 2 * rule.early * step) << "too early";

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -101,6 +102,30 @@ TEST_F(OnContacts, ALoneQueryEndsWhereRoundingDoesAndSaysSoWhereItEndsTooEarly) 
   }
   EXPECT_GT(asked, 5);
   EXPECT_GT(lost, asked / 2);
+}
+
+/// A field along x: a wall that holds the tool 20/3 mm from the device, and behind it another that would hold
+/// it at 21 mm. At the device its planes say next to nothing of how the first one gives way.
+TEST_F(OnContacts, OfTwoBalancesTheOneIsFoundThatAToolFromTheDeviceComesTo) {
+  const auto field = [](double x) {
+    const double near = 40e3 * std::max(0.0, 1e-3 - 0.1 * x),  // N: 40 at 0, none from 10 mm on
+        far = x < 20e-3 ? 8e3 * std::max(0.0, x - 14e-3) : std::max(0.0, 48 - 6e3 * (x - 20e-3));
+    ContactResponse out;
+    out.contact = true;
+    out.max_depth = 5e-3;
+    out.wrench.force.x = near + far;
+    out.planes.push_back({.normal = Vec3(1, 0, 0), .force = near + far, .stiffness = x == 0 ? 100.0 : 4e3});
+    return out;
+  };
+  LoneQuery query(*geometry, kStiffness);
+  ContactResponse here = field(0);
+  query.begin(Pose{}, here);
+  while (const std::optional<Pose> there = query.wanted()) query.take(field(there->position.x));
+  query.felt(here);
+  ASSERT_TRUE(here.felt);
+  EXPECT_TRUE(here.felt->settled);
+  EXPECT_NEAR(here.felt->tool.position.x, 20e-3 / 3, 1e-6);
+  EXPECT_NEAR(here.felt->wrench.force.x, 40.0 / 3, 2e-3);
 }
 
 TEST_F(OnContacts, QueriesTogetherFindTheBalancesOfLoneQueriesInAsManyRoundsAsTheLongestTakes) {

@@ -24,6 +24,8 @@ Problem bad_request(std::string detail, std::string field) {
 Problem problem_of(const Error& error, std::string field) {
   if (error.code == ErrorCode::kBadValue) return bad_request(error.sentence, std::move(field));
   if (error.code == ErrorCode::kNoDevice) return {409, "no-device", error.sentence, std::move(field)};
+  // What the scene's engine does not do, as the gpu engine no distances.
+  if (error.code == ErrorCode::kUsage) return {409, "conflict", error.sentence, std::move(field)};
   return {500, "internal", error.sentence, std::move(field)};
 }
 
