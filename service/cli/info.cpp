@@ -91,12 +91,12 @@ Result<MeshInfo> inspect(const std::string& path, const InfoOptions& options) {
     }
   if (!options.unit_m) info.unit = unit_guess(path, info.max - info.min);
   const Result<Lattice> lattice = choose_lattice(*mesh, *mesh);
-  if (!lattice) return lattice.error();
+  if (!lattice) return bad_value(fmt::format("{}: {}", path, lattice.error().sentence));
   info.step = lattice->step_m;
   const Result<SmoothAngle> angle = make_smooth_angle(30);
   if (!angle) return angle.error();
   const Result<LatticeMesh> body = build_lattice_mesh(*mesh, *lattice, *angle, info.body);
-  if (!body) return body.error();
+  if (!body) return bad_value(fmt::format("{}: {}", path, body.error().sentence));
   info.closed = body->closed;
   return info;
 }

@@ -54,6 +54,7 @@ def test_a_mesh_that_is_flat_after_snapping():
     point = (0.0, 0.0, 0.0)
     folder.write('point.stl', stl([(point, point, point)]))
     refuse_scene(folder, tool={'mesh': 'point.stl'})
+    expect_refused(palpate('info', folder / 'point.stl'), 3, 'point.stl')
 
 
 def test_text_that_is_no_json():
