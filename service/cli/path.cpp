@@ -154,12 +154,11 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
   if (!report) return report.error();
   for (const std::string& note : backend.take_notes()) console.note(note);
   if (report->without_depth > 0)
-    console.note(
-        fmt::format("at {} of {} poses triangles meet and no sample of either body lies in the other, so "
-                    "that there is no "
-                    "depth to hold against the tolerance and the contact does not count: sheets, or surfaces "
-                    "that coincide",
-                    report->without_depth, report->moments.size()));
+    console.note(fmt::format(
+        "at {} of {} poses triangles meet and no sample of either body lies in the other: there is "
+        "no depth to hold against the tolerance, and the contact does not count (sheets, or "
+        "surfaces that coincide)",
+        report->without_depth, report->moments.size()));
   const std::string engine =
       backend.name() + " on " + backend.device() +
       (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());

@@ -39,11 +39,9 @@ struct PathReport {
   std::optional<std::size_t> closest;    ///< moment with the least clearance of those that are apart
   std::optional<std::size_t> deepest;    ///< moment with the greatest depth
   std::vector<std::string> static_parts,
-      tool_parts;  ///< that touch at a pose, or come together first on a screw
-  std::uint64_t
-      tolerated = 0,
-      without_depth =
-          0;  ///< poses whose contact does not count; of these, where no sample lies in the other body
+      tool_parts;                   ///< that touch at a pose, or come together first on a screw
+  std::uint64_t tolerated = 0;      ///< poses whose contact does not count
+  std::uint64_t without_depth = 0;  ///< of these, where no sample lies in the other body
   std::uint64_t screws = 0, evaluations = 0;
   /// Whether the tool touches nowhere.
   bool clear() const { return !first_screw; }
