@@ -7,9 +7,7 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string_view>
-#include <utility>
 
 #include "model/files/one_line.h"
 #include "model/files/path_file.h"
@@ -102,20 +100,15 @@ Result<std::vector<Pose>> read_poses(const std::string& path) {
 }
 
 Result<std::vector<Pose>> read_poses_of_scene(const std::string& path, const std::string& scene_file) {
-  const std::optional<bool> guided = guided_header(path);
-  if (!guided) return read_poses(path);
-  const auto points = read_path(path, *guided);
+  if (!guided_header(path).value_or(false)) return read_poses(path);
+  const auto points = read_path(path, true);
   if (!points) return points.error();
-  std::vector<GuidePoint> guide;
-  if (*guided) {
-    auto scene = read_scene(scene_file);
-    if (!scene) return scene.error();
-    guide = std::move(scene->device.guide);
-    if (guide.empty())
-      return bad_value(fmt::format("{}: the path is along a guide, and {} names none", path, scene_file));
-  }
+  const auto scene = read_scene(scene_file);
+  if (!scene) return scene.error();
+  if (scene->device.guide.empty())
+    return bad_value(fmt::format("{}: the path is along a guide, and {} names none", path, scene_file));
   std::vector<Pose> out;
-  for (const PathPoint& point : *points) out.push_back(path_pose(point, guide));
+  for (const PathPoint& point : *points) out.push_back(path_pose(point, scene->device.guide));
   return out;
 }
 
