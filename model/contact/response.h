@@ -39,7 +39,7 @@ struct ContactResponse {
   Vec3 gc{0};     ///< centre of mass of the tool at this pose, world, m
   Wrench wrench;  ///< `paper`: sum over areas. `refined`: of the pressure field at this pose, before any
                   ///< coupling
-  double max_depth = 0;      ///< `refined`: how deep the deepest sample lies, m
+  double max_depth = 0;      ///< `refined`: how deep the deepest sample lies, m; `paper`: 0
   std::optional<Felt> felt;  ///< `refined`, of a lone query; respond() leaves it empty
   std::uint32_t flags = 0;
   bool contact = false;

@@ -218,7 +218,7 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(Scene scene, const SceneOptio
 
 Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, double tolerance_m,
                                                           const Parts& parts, Console& console) {
-  // What the scene's profile is says nothing of whether bodies touch.
+  // A verdict counts containment, for which `paper` has no set.
   options.profile = Profile::kRefined;
   options.all_samples = tolerance_m > 0;
   return prepare_scene(options, Purpose::kQuery, parts, console);
