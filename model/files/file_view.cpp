@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <utility>
 
 namespace palpate {
@@ -27,6 +28,8 @@ Result<FileView> FileView::open(const std::string& path) {
   void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
   const int failed = errno;
   ::close(file);
+  if (data == MAP_FAILED && failed == ENOMEM)  // who has set a limit hears of it, as where `new` finds none
+    if (const std::new_handler told = std::get_new_handler()) told();
   if (data == MAP_FAILED)
     return bad_value(fmt::format("'{}' can't be read: {}", path, std::strerror(failed)));
   return FileView(static_cast<const char*>(data), size);

@@ -180,17 +180,17 @@ Result<void> run_command(const RunOptions& options, const Parts& parts) {
     loaded.scene.device.replay_file = driver.substr(replay.size());
     driver = "replay";
   }
-  if (options.asap && driver != "simulated" && driver != "replay")
-    return Error{
-        ErrorCode::kUsage,
-        fmt::format("--pace asap is virtual time, which the device '{}' can't keep: simulated and replay can",
-                    driver)};
   if (!options.firmware.empty() && driver != "falcon")
     return Error{ErrorCode::kUsage,
                  fmt::format("--firmware is for the device falcon, and the device is {}", driver)};
   Result<std::unique_ptr<HapticDevice>> device =
       parts.make_device(driver, loaded.scene, loaded.geometry.tool_gc_m, options.firmware);
   if (!device) return device.error();
+  if (options.asap && driver != "simulated" && driver != "replay")
+    return Error{
+        ErrorCode::kUsage,
+        fmt::format("--pace asap is virtual time, which the device '{}' can't keep: simulated and replay can",
+                    driver)};
 
   const Result<std::vector<PlanChange>> switches = read_switches(options, loaded);
   if (!switches) return switches.error();

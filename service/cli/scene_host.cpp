@@ -219,6 +219,9 @@ Result<std::unique_ptr<HostedScene>> prepare_scene(Scene scene, const SceneOptio
 Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, double tolerance_m,
                                                           const Parts& parts, Console& console) {
   // A verdict counts containment, for which `paper` has no set.
+  if (const auto stated = read_scene(options.scene, options.profile);
+      stated && stated->response.profile == Profile::kPaper)
+    console.note("the profile is paper; whether and how deep the tool touches is asked as in refined");
   options.profile = Profile::kRefined;
   options.all_samples = tolerance_m > 0;
   return prepare_scene(options, Purpose::kQuery, parts, console);

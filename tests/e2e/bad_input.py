@@ -162,6 +162,9 @@ def test_an_unknown_haptic_device():
     expect_refused(palpate('run', folder.save(), '--device', 'wand'), 3, 'wand', 'simulated')
     expect_refused(palpate('run', folder.save(), '--device', 'falcon'), 4, 'falcon')
     expect_refused(palpate('run', folder.save(), '--device', 'falcon', '--pace', 'asap'), 2, 'falcon')
+    expect_refused(
+        palpate('run', folder.save(), '--device', 'nodev', '--pace', 'asap'), 3, 'nodev', 'simulated'
+    )
 
 
 main(globals())

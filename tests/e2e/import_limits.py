@@ -101,6 +101,12 @@ def test_an_import_that_takes_all_memory():
     expect_contained('greed', 'more than the 300 MiB of memory allowed', options=('--import-memory', '300'))
 
 
+def test_an_import_that_finds_no_memory_for_the_file_itself():
+    folder = Folder()
+    outcome = palpate('info', folder / 'block.stl', '--import-memory', '1')
+    expect_refused(outcome, 3, 'block.stl', 'more than the 1 MiB of memory allowed')
+
+
 def test_an_import_that_ends_without_an_answer():
     expect_contained('silent', 'unsound')
     expect_contained('garbage', 'unsound')

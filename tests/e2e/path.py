@@ -128,6 +128,7 @@ def test_a_scene_of_profile_paper_gets_the_same_verdicts():
             done = palpate('path', scene, path, '--tolerance', '0.0001')
             expect(done.code == 5, done)
             told.append(json.loads(done.out))
+            expect(('the profile is paper' in done.err) == (profile == 'paper'), done)
         expect(told[0] == told[1] and told[0]['worst_depth_m'] > 0.0004, told)
 
 

@@ -111,6 +111,14 @@ def test_a_scene_has_the_engine_that_it_is_opened_with():
             == {'ref', 'cpu'},
             'each by its own',
         )
+        paper = server.ready(
+            server.ask('POST', '/v1/scenes', {'path': 'scene.json', 'engine': 'cpu', 'profile': 'paper'})
+        )
+        warned = json.loads(server.ask('GET', f'/v1/scenes/{paper}').body)['warnings']
+        expect(any('cpu' in warning and 'ref answers' in warning for warning in warned), warned)
+        shaders = server.ready(server.ask('POST', '/v1/scenes', {'path': 'scene.json', 'engine': 'gpu'}))
+        distances = server.ask('POST', f'/v1/scenes/{shaders}/query?clearance=1', {'poses': rows})
+        expect(distances.status == 409 and b'problem:conflict' in distances.body, distances)
         strip = lambda body: without_times(body).replace(b'"engine":"ref"', b'"engine":"cpu"')
         expect(strip(answers['ref']) == strip(answers['cpu']), 'and all alike')
         for wrong in ('none', 3, ''):

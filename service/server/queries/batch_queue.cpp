@@ -10,6 +10,7 @@
 #include "service/cli/answer.h"
 #include "service/loop/thread_share.h"
 #include "service/queries/query_json.h"
+#include "service/server/http/problem.h"
 #include "service/server/queries/polite_backend.h"
 
 namespace palpate {
@@ -49,8 +50,7 @@ struct BatchQueue::Batch {
   std::size_t together = kSlicePoses;  ///< most poses asked at once, for them to take no longer than a slice
   BatchAnswer answers;                 ///< of such
   std::string made;                    ///< by the slice under way
-  bool failed = false;
-  std::string failure;
+  std::optional<Error> failure;
 
   // Shared with the connection:
   std::mutex mutex;
@@ -161,10 +161,10 @@ void BatchQueue::run() {
       continue;
     }
     answer_slice(*batch);
-    const bool done = batch->failed || batch->next == batch->request.poses.size();
-    if (batch->failed && batch->reply) {  // nothing was sent: the client gets the reason
+    const bool done = batch->failure.has_value() || batch->next == batch->request.poses.size();
+    if (batch->failure && batch->reply) {  // nothing was sent: the client gets the reason
       --metrics_.batches_now;
-      batch->reply(Problem{500, "internal", batch->failure, ""});
+      batch->reply(problem_of(*batch->failure));
       continue;
     }
     bool parked = false;
@@ -172,7 +172,7 @@ void BatchQueue::run() {
       const std::lock_guard lock(batch->mutex);
       batch->ready += batch->made;
       batch->done = done;
-      batch->broken = batch->failed;
+      batch->broken = batch->failure.has_value();
       parked = batch->parked =
           !done && !batch->cancelled &&
           batch->ready.size() > kReadAhead;  // whoever has gone would never come back for it
@@ -282,8 +282,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       const Result<void> answered = request.any ? touch_slice(batch) : clearance_slice(batch, start);
       if (answered) return;
       ++metrics_.backend_errors;
-      batch.failed = true;
-      batch.failure = answered.error().sentence;
+      batch.failure = answered.error();
       return;
     }
     const auto parts =
@@ -322,8 +321,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       }
       if (!answered) {
         ++metrics_.backend_errors;
-        batch.failed = true;
-        batch.failure = answered.error().sentence;
+        batch.failure = answered.error();
         return;
       }
       count = *answered;
@@ -336,8 +334,7 @@ void BatchQueue::answer_slice(Batch& batch) {
       }
     }
   } catch (const std::exception& error) {
-    batch.failed = true;
-    batch.failure = std::string("answering the poses failed: ") + error.what();
+    batch.failure = Error{ErrorCode::kInternal, std::string("answering the poses failed: ") + error.what()};
   }
 }
 

@@ -511,6 +511,10 @@ void SceneStore::finish(const std::shared_ptr<Entry>& entry, std::shared_ptr<Hos
       entry->engine_bytes = prepared->backend->memory_bytes();
       entry->facts = facts_of(*prepared, bytes);
       entry->warnings = prepared->loaded.scene.warnings;
+      const std::string &asked = entry->content.engine.empty() ? backend_ : entry->content.engine,
+                        answers = prepared->backend->name();
+      if (!asked.empty() && asked != "auto" && asked != answers)
+        entry->warnings.push_back("the engine " + asked + " can't take the scene: " + answers + " answers");
       entry->prepared = std::move(prepared);
       ++metrics_.scenes_prepared;
     }
