@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "model/contact/response.h"
+#include "model/mesh/winding_number.h"
 
 namespace palpate {
 namespace {
@@ -81,14 +83,46 @@ void tell_start(const LoadedScene& scene, const Contacts& contacts, const Contac
                       "them out until they have opened once");
 }
 
+constexpr std::size_t kMostAsked = 100;  // triangles (chosen: up to a millisecond or two each)
+constexpr double kBeside = 16;           // steps: far more than rounding moves a triangle (chosen)
+
+/// How sure it is what of a body's triangles that touch another, which is not closed, lies inside that: a
+/// triangle is in doubt where the other's winding number is nearer to one half than to a whole number, on
+/// both its sides, for on a surface it is one half. The vote and its voxels have no part in it.
+template <class ToOther>
+std::string doubt(const LatticeMesh& own, std::initializer_list<const std::vector<std::uint32_t>*> touching,
+                  const LatticeMesh& other, const ToOther& to_other, const char* own_name) {
+  std::vector<std::uint32_t> ids;
+  for (const std::vector<std::uint32_t>* list : touching) ids.insert(ids.end(), list->begin(), list->end());
+  if (ids.empty()) return {};
+  const WindingNumber winding(other);
+  const auto open = [&](const Vec3& point) {
+    const double number = winding.at(point), part = number - std::floor(number);
+    return part > 0.25 && part < 0.75;
+  };
+  const std::size_t asked = std::min(ids.size(), kMostAsked);
+  std::size_t doubtful = 0;
+  for (std::size_t i = 0; i < asked; ++i) {
+    const std::uint32_t id = ids[i * ids.size() / asked];
+    const Vec3 a = to_other(own.corner(id, 0)), b = to_other(own.corner(id, 1)),
+               c = to_other(own.corner(id, 2));
+    const Vec3 side = kBeside * glm::normalize(glm::cross(b - a, c - a)), middle = (a + b + c) / 3.0;
+    if (open(middle + side) && open(middle - side)) ++doubtful;
+  }
+  return fmt::format("; {} of {} triangles of the {} that touch it {} where that is in doubt",
+                     doubtful == 0 ? "none" : fmt::format("{}", doubtful), asked, own_name,
+                     doubtful > 1 ? "lie" : "lies");
+}
+
 }  // namespace
 
-Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend) {
+Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend,
+                             const std::optional<Pose>& at) {
   SceneTalk out;
   const SceneGeometry& geometry = scene.geometry;
   const Profile profile = scene.scene.response.profile;
   const double stiffness = scene.scene.response.stiffness_n_per_m;
-  const Result<LatticePose> pose = to_lattice(scene.scene.start, geometry);
+  const Result<LatticePose> pose = to_lattice(at ? *at : scene.scene.start, geometry);
   if (!pose) return pose.error();
   Contacts contacts;
   if (auto done = backend.query(*pose, nullptr, contacts); !done) return done.error();
@@ -98,14 +132,25 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
   out.free = !contacts.contact;
   if (profile == Profile::kPaper) return out;
 
+  const auto to_world = [&](const Int3& p) { return Vec3(transform(*pose, p)); };
+  const auto to_tool = [&](const Int3& p) {
+    Vec3 own(0);
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r)
+        own[c] += 0x1p-30 * pose->rotation_q30[r][c] * (static_cast<double>(p[r]) - pose->translation[r]);
+    return own;
+  };
+  const std::string vote = "what is inside it is a majority vote (docs/EXACTNESS.md, section 2)";
   if (!geometry.mockup.closed && backend.has_internal_voxels())
     out.bodies.push_back(
-        "the mock-up is not closed: what is inside it is a majority vote (docs/EXACTNESS.md, section 2)");
+        "the mock-up is not closed: " + vote +
+        doubt(geometry.tool, {&contacts.cmt, &contacts.imt}, geometry.mockup, to_world, "tool"));
   if (!geometry.tool.closed && !pose->beyond_lattice)
     out.bodies.push_back(
         (contacts.flags & kFlagToolOpen) != 0
             ? "the tool is open and has no inside: it is pushed as a sheet is, out of the mock-up"
-            : "the tool is not closed: what is inside it is a majority vote (docs/EXACTNESS.md, section 2)");
+            : "the tool is not closed: " + vote +
+                  doubt(geometry.mockup, {&contacts.cst, &contacts.est}, geometry.tool, to_tool, "mock-up"));
 
   // The mean thickness, of a plate its own: what is thick on the whole may have thin walls, but one sentence
   // on every block would be read by nobody.

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,15 @@ struct SceneTalk {
   /// How deep the tool starts, where and between which parts; of a contact without a depth, and in `paper`,
   /// that it touches. Empty when it is free.
   std::vector<std::string> start;
-  /// `refined`: whose inside is a majority vote, or whose walls are so thin that the device pushes through.
+  /// `refined`: whose inside is a majority vote, and of how many of the triangles that touch there it is in
+  /// doubt on which side they are; whose walls are so thin that the device pushes through.
   std::vector<std::string> bodies;
 };
 
-/// Asks `backend`, which is prepared for the scene, about the start pose; not while anything else asks it.
-/// Error: the back end failed.
-Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend);
+/// Asks `backend`, which is prepared for the scene, about a pose, the start where none is given; not while
+/// anything else asks it. Error: the back end failed.
+Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend,
+                             const std::optional<Pose>& at = std::nullopt);
 
 /// How thick a plate must be to hold against `force_n` on the scene's reference area, m. Pushed right through
 /// a wall, a plate of thickness t is pushed back by half of k'·t on each of its places: front and back face

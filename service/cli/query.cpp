@@ -83,7 +83,8 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
     for (const std::string& note : notes) console.note(note);
   }
 
-  const Result<SceneTalk> talk = scene_talk(scene.loaded, *scene.backend);
+  const Result<SceneTalk> talk =
+      scene_talk(scene.loaded, *scene.backend, poses.empty() ? std::nullopt : std::optional(poses.front()));
   if (!talk) return talk.error();
   for (const std::string& sentence : talk->bodies) console.note(sentence);
 

@@ -2,6 +2,8 @@
 import signal
 import subprocess
 
+import re
+
 from harness import *
 
 FIELDS = [
@@ -161,6 +163,29 @@ def test_batch_is_named_and_changes_only_times():
     for a, b in zip(alone, batch, strict=True):
         b.pop('batch')
         expect(without_time(a) == without_time(b), f"pose {a['number']} differs")
+
+
+def test_where_an_open_body_leaves_its_inside_in_doubt_it_is_said():
+    # A ball that lacks a cap: at its mouth half of all directions leave it. A block beside it is closed.
+    folder = Folder()
+    at, radius = 0.1, 0.03
+    cup = [t for t in sphere(radius, 24, (0, 0, at)) if sum(p[2] for p in t) / 3 < at + 0.7 * radius]
+    folder.write('parts.stl', stl(box((0.2, 0.2, 0.04), (0, 0, -0.02)) + cup))
+    folder.write('plate.stl', stl(box((0.05, 0.05, 0.001))))
+    scene = folder.save(
+        static=[{'mesh': 'parts.stl', 'units': 'm'}], tool={'mesh': 'plate.stl', 'units': 'm'}
+    )
+    told = {}
+    for place, z in (('mouth', at + 0.7 * radius), ('block', -0.0002), ('nowhere', 0.06)):
+        done = palpate('query', scene, '--pose', f'0 0 {z} 0 0 0 1', '--json')
+        expect(done.code == 0, done)
+        told[place] = re.search(
+            r'majority vote.*?(?:; (none|\d+) of (\d+) triangles of the tool|$)', done.err, re.M
+        )
+        expect(told[place], done)
+    expect(int(told['mouth'][1]) >= 2, told)  # a face of the plate, right above the mouth
+    expect(told['block'][1] == 'none' and int(told['block'][2]) >= 4, told)
+    expect(told['nowhere'][1] is None, told)
 
 
 def test_profile_paper_has_no_est():
