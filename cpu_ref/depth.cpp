@@ -107,25 +107,35 @@ int crossed(const LatticeMesh& mesh, const BoxTree& tree, const Int3& from, cons
   return net;
 }
 
-/// How deep in a V_bnd voxel's middle is, in shells: what most of six walks say that end in the next voxels
-/// that are not V_bnd.
+constexpr int kNear = 8;  // voxels
+
+/// How many shells a V_bnd voxel's middle is in: of six walks to the next voxels that are not V_bnd the one
+/// that says least is right, a near one before all that are far.
 int winding_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition,
                      const Int3& voxel) {
-  std::array<int, 6> said{};
+  struct Said {
+    bool far;
+    int shells;
+  };
+  std::array<Said, 6> said{};
   for (std::size_t i = 0; i < 6; ++i) {
     const int axis = static_cast<int>(i / 2), way = i % 2 == 0 ? 1 : -1;
     Int3 end = voxel;
     VoxelClass kind = VoxelClass::kBoundary;
-    while (kind == VoxelClass::kBoundary) {
+    int length = 0;
+    for (; kind == VoxelClass::kBoundary; ++length) {
       end[axis] += way;
       kind = partition.in_grid(end) ? partition.classes.at(end) : VoxelClass::kExternal;
     }
     Int3 until = partition.centre(voxel);
-    until[axis] += (end[axis] - voxel[axis]) * partition.grid.size;
-    said[i] = crossed(mesh, tree, partition.centre(voxel), until) + (kind == VoxelClass::kInternal ? 1 : 0);
+    until[axis] += way * length * partition.grid.size;
+    said[i] = {length > kNear,
+               crossed(mesh, tree, partition.centre(voxel), until) + (kind == VoxelClass::kInternal ? 1 : 0)};
   }
-  std::sort(said.begin(), said.end());
-  return said[2];
+  return std::min_element(
+             said.begin(), said.end(),
+             [](const Said& a, const Said& b) { return a.far != b.far ? b.far : a.shells < b.shells; })
+      ->shells;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // One invocation: a row of voxels along `axis`. Goes through its mixed bricks from where walks end, and knows
 // at each boundary voxel what a walk from its middle on says: what it crosses, and 1 more where it ends in
-// V_int. Puts that among the three smallest of the voxel (in least[], one after the other by rank).
+// V_int. shells[] keeps the least, of those that end near if there are any.
 // Before: row_link from the same end; classes; what half voxels are crossed by.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -9,7 +9,8 @@
 #include "shaders/shared/prepare.h"
 #include "shaders/shared/scene.h"
 
-layout(constant_id = 0) const bool UP = true;   // walks go that way along the axis
+layout(constant_id = 0) const bool UP = true;     // walks go that way along the axis
+layout(constant_id = 1) const bool LAST = true;   // no sweep follows
 
 layout(scalar, set = 0, binding = 0) readonly buffer BrickSlot { uint32_t brick_slot[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer MixedBrick { uint32_t mixed_brick[]; };
@@ -17,14 +18,17 @@ layout(scalar, set = 0, binding = 2) readonly buffer Bricks { Brick bricks[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Halves { int32_t halves[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer RowHead { uint32_t row_head[]; };
 layout(scalar, set = 0, binding = 5) readonly buffer RowLink { uint32_t row_link[]; };
-layout(scalar, set = 0, binding = 6) buffer Least { int32_t least[]; };
-layout(push_constant, scalar) uniform Push { GridPush push; uint32_t voxels; };
+layout(scalar, set = 0, binding = 6) buffer Shells { int32_t shells[]; };
+layout(push_constant, scalar) uniform Push { GridPush push; };
 
-void put(uint32_t voxel, int32_t said) {
-  const int32_t first = least[voxel], second = least[voxels + voxel], third = least[2u * voxels + voxel];
-  least[voxel] = min(first, said);
-  least[voxels + voxel] = max(first, min(second, said));
-  least[2u * voxels + voxel] = max(second, min(third, said));
+const uint32_t kNearWalk = 8u;   // voxels (docs/EXACTNESS.md section 4)
+// Added to what a walk says that ends further away: more than any says, so that what is near comes first. No
+// line is crossed by 2^29 triangles.
+const int32_t kFar = 1 << 30;
+
+void put(uint32_t voxel, int32_t said, bool near) {
+  const int32_t least = min(shells[voxel], near ? said : said + kFar);
+  shells[voxel] = LAST && least >= kFar / 2 ? least - kFar : least;
 }
 
 void main() {
@@ -38,12 +42,14 @@ void main() {
   const uint32_t row_bit = (iu & 7u) << (u * 3u) | (iv & 7u) << (v * 3u);
   const int32_t back = UP ? -1 : 1;   // a step against the walks
   int32_t said = 0, after = UP ? push.bricks[axis] : -1;   // place of the mixed brick left last
+  uint32_t length = 0u;                                    // of the walks from the last voxel, voxels
   for (uint32_t slot = row_head[(iu >> 3) + (rows_u >> 3) * (iv >> 3)]; slot != kNoVoxel;
        slot = row_link[slot]) {
     const int32_t at = cell_of_number(mixed_brick[slot], push.bricks)[axis];
     if (after + back != at) {   // a uniform brick ends the walks
       brick[axis] = at - back;
       said = brick_slot[cell_number(brick, push.bricks)] == kBrickInternal ? 1 : 0;
+      length = 0u;
     }
     after = at;
     for (uint32_t i = 0u; i < 8u; ++i) {
@@ -51,11 +57,12 @@ void main() {
                      word = bricks[slot].boundary[bit >> 5];
       if ((word & mask) == 0u) {
         said = (bricks[slot].internal_[bit >> 5] & mask) != 0u ? 1 : 0;
+        length = 0u;
         continue;
       }
       const uint32_t voxel = bricks[slot].first[bit >> 5] + uint32_t(bitCount(word & (mask - 1u)));
       const int32_t low = halves[2u * voxel], high = halves[2u * voxel + 1u];
-      put(voxel, said + (UP ? high : -low));
+      put(voxel, said + (UP ? high : -low), ++length <= kNearWalk);
       said += UP ? low + high : -low - high;
     }
   }

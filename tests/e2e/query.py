@@ -188,6 +188,43 @@ def test_where_an_open_body_leaves_its_inside_in_doubt_it_is_said():
     expect(told['nowhere'][1] is None, told)
 
 
+def test_in_the_mouth_of_an_open_body_nothing_is_pushed():
+    # A ball that lacks a cap, and a plate that lies in its mouth, beside its wall: whatever the voxels.
+    folder = Folder()
+    cup = [t for t in sphere(0.03, 24) if sum(p[2] for p in t) / 3 < 0.021]
+    folder.write('cup.stl', stl(cup))
+    folder.write('plate.stl', stl(box((0.03, 0.03, 0.001))))
+    for voxel_size in (0.002, 0.004, 0.006, 0.008):
+        scene = folder.save(
+            static=[{'mesh': 'cup.stl', 'units': 'm'}],
+            tool={'mesh': 'plate.stl', 'units': 'm'},
+            response={'voxel_size': voxel_size},
+        )
+        (line,) = lines_of(palpate('query', scene, '--pose', '0.0065 0 0.018 0 0 0 1', '--json'))
+        expect(line['pairs'] > 0 and line['force'] == [0, 0, 0], (voxel_size, line['force']))
+
+
+def test_a_thin_plate_without_an_end_pushes_as_a_whole_one_does():
+    # Its walks along it leave it at that end, more than eight voxels away.
+    folder = Folder()
+    folder.write('ball.stl', stl(sphere(0.01)))
+    plate = box((0.06, 0.06, 0.003))
+    forces = []
+    for name, triangles in (
+        ('whole', plate),
+        ('without', [t for t in plate if any(abs(p[0] - 0.03) > 1e-9 for p in t)]),
+    ):
+        folder.write(f'{name}.stl', stl(triangles))
+        scene = folder.save(
+            static=[{'mesh': f'{name}.stl', 'units': 'm'}],
+            tool={'mesh': 'ball.stl', 'units': 'm'},
+            response={'voxel_size': 0.002, 'stiffness': 2000},
+        )
+        (line,) = lines_of(palpate('query', scene, '--pose', '0 0 0.0112 0 0 0 1', '--json'))
+        forces.append(line['force'])
+    expect(forces[0][2] > 0.15 and forces[0] == forces[1], forces)
+
+
 def test_profile_paper_has_no_est():
     folder = Folder()
     (line,) = lines_of(palpate('query', folder.save(), '--pose', PRESSED, '--profile', 'paper'))

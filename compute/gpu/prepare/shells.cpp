@@ -1,6 +1,6 @@
-// How many shells of an open body the middles of its boundary voxels are in: what most of six walks along the
-// axes say (docs/EXACTNESS.md section 4, "Vote"). A walk crosses what each voxel on its way is crossed by, so
-// one sweep along a row knows what all walks from its voxels say.
+// How many shells of an open body the middles of its boundary voxels are in: the least that six walks along
+// the axes say, of the near ones if there are any (docs/EXACTNESS.md section 4, "Vote"). A walk crosses what
+// each voxel on its way is crossed by, so one sweep along a row knows what all walks from its voxels say.
 #include <cstdint>
 
 #include "compute/gpu/prepare/partition.h"
@@ -13,41 +13,37 @@ void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& bod
   PartitionBuffers& p = body.partition;
   const std::uint64_t voxels = p.grid.boundary_voxels;
   const VulkanBuffer halves = steps.buffer("crossings of half voxels", voxels, 8);
-  const VulkanBuffer least = steps.buffer("what walks say", voxels, 12);
   const VulkanBuffer link = steps.buffer("rows of bricks", p.grid.mixed_bricks);
+  p.shells = steps.buffer("shells of voxels", voxels);
   if (!steps.ok()) return;
-  steps.fill(least, INT32_MAX);
-  struct {
-    gpu::GridPush grid;
-    std::uint32_t voxels;
-  } push{{}, p.grid.boundary_voxels};
-  push.grid.origin = p.grid.origin;
-  push.grid.size = p.grid.size;
-  push.grid.bricks = p.grid.bricks;
+  steps.fill(p.shells, INT32_MAX);
+  gpu::GridPush push;
+  push.origin = p.grid.origin;
+  push.size = p.grid.size;
+  push.bricks = p.grid.bricks;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     const int u = static_cast<int>((axis + 1) % 3), v = static_cast<int>((axis + 2) % 3);
     const std::uint64_t rows =
         static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]);
     const VulkanBuffer head = steps.buffer("rows of bricks", rows);
     if (!steps.ok()) return;
-    push.grid.axis = axis;
-    push.grid.count = pairs.count;
+    push.axis = axis;
+    push.count = pairs.count;
     steps.fill(halves, 0);
     steps.run_items(spirv::half_cross, {},
                     {body.vertices, body.triangles, body.triangle_info, pairs.triangle, pairs.voxel,
                      p.boundary_place, p.mixed_brick, halves},
-                    push.grid, pairs.count);
+                    push, pairs.count);
     for (const std::uint32_t up : {0u, 1u}) {
-      push.grid.count = static_cast<std::uint32_t>(rows);
-      steps.run_items(spirv::row_link, {1 - up}, {p.brick_slot, head, link}, push.grid, rows);
-      push.grid.count = static_cast<std::uint32_t>(rows * 64);
-      steps.run_items(spirv::shell_sweep, {up},
-                      {p.brick_slot, p.mixed_brick, p.bricks, halves, head, link, least}, push, rows * 64);
+      push.count = static_cast<std::uint32_t>(rows);
+      steps.run_items(spirv::row_link, {1 - up}, {p.brick_slot, head, link}, push, rows);
+      push.count = static_cast<std::uint32_t>(rows * 64);
+      const std::uint32_t last = axis == 2 && up == 1 ? 1 : 0;
+      steps.run_items(spirv::shell_sweep, {up, last},
+                      {p.brick_slot, p.mixed_brick, p.bricks, halves, head, link, p.shells}, push, rows * 64);
     }
     steps.progress("shells", 0.95);
   }
-  p.shells = steps.buffer("shells of voxels", voxels);
-  if (steps.ok()) steps.run([&](CommandRecorder& r) { r.copy(least, 8 * voxels, p.shells, 0, 4 * voxels); });
 }
 
 }  // namespace palpate

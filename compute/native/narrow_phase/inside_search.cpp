@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 
@@ -18,6 +19,8 @@ namespace palpate {
 using namespace gpu;  // names of shaders/shared/scene.h
 
 namespace {
+
+constexpr int kNearWalk = 8;  // voxels (EXACTNESS, section 4)
 
 bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) {
   return (mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0;
@@ -104,19 +107,22 @@ bool InsideSearch::inside_open(const Int3& point, const Int3& voxel, std::uint32
   return winding + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary)) > 0;
 }
 
-/// Of a V_bnd voxel's middle: what most of six walks say.
+/// Of a V_bnd voxel's middle: the least that its walks say, the near ones if there are any.
 std::int16_t InsideSearch::winding_by_walks(const Int3& voxel) const {
   const Int3 middle =
       partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
-  std::array<int, 6> said{};
+  std::optional<int> of_near, of_all;
+  const auto lower = [](std::optional<int>& least, int said) {
+    least = std::min(least.value_or(said), said);
+  };
   for (int axis = 0; axis < 3; ++axis)
     for (const int way : {1, -1}) {
       const Walk out = walk(middle, voxel, axis, way, false);
-      said[static_cast<std::size_t>(2 * axis + (way > 0 ? 1 : 0))] =
-          out.net + (out.kind == kVoxelInternal ? 1 : 0);
+      const int said = out.net + (out.kind == kVoxelInternal ? 1 : 0);
+      lower(of_all, said);
+      if (std::abs(out.voxel[axis] - voxel[axis]) <= kNearWalk) lower(of_near, said);
     }
-  std::sort(said.begin(), said.end());
-  return static_cast<std::int16_t>(std::clamp(said[2], -30000, 30000));
+  return static_cast<std::int16_t>(std::clamp(of_near ? *of_near : *of_all, -30000, 30000));
 }
 
 /// Calls take(id) for what a V_bnd voxel lists and whose box there meets a box of parts. Sixteen at a time:
