@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -7,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "model/files/one_line.h"
 #include "model/import/import_checks.h"
 
 namespace palpate {
@@ -267,6 +270,24 @@ std::map<std::string, std::uint64_t> faces_of_gltf(std::string_view bytes) {
   return out;
 }
 
+namespace {
+
+/// A file may not be read without what it requires, but for what says nothing of shapes.
+std::string distrust_extensions(const Json& required) {
+  for (const Json& entry : required) {
+    if (!entry.is_string()) return "has an entry in 'extensionsRequired' that is not a string";
+    const std::string& name = entry.get_ref<const std::string&>();
+    constexpr std::array<std::string_view, 6> kOfLooks = {
+        "KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "MSFT_texture_", "KHR_animation_"};
+    if (std::none_of(kOfLooks.begin(), kOfLooks.end(),
+                     [&](std::string_view begin) { return name.starts_with(begin); }))
+      return fmt::format("requires the extension '{}', which can't be read", one_line(name.substr(0, 60)));
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string distrust_gltf(std::string_view bytes, const std::string& path) {
   std::string_view text;
   if (std::string wrong = find_json(bytes, text); !wrong.empty()) return wrong;
@@ -285,6 +306,7 @@ std::string distrust_gltf(std::string_view bytes, const std::string& path) {
   std::string wrong = distrust_nodes(list(root, "nodes"));
   if (wrong.empty()) wrong = distrust_buffers(root, bytes.size(), path);
   if (wrong.empty()) wrong = distrust_meshes(root);
+  if (wrong.empty()) wrong = distrust_extensions(list(root, "extensionsRequired"));
   return wrong;
 }
 

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <vector>
+
+#include "model/files/one_line.h"
 
 namespace palpate {
 namespace {
@@ -50,6 +54,21 @@ bool is_utf16(std::string_view bytes) {
          begin == std::string_view("<\0", 2) || begin == std::string_view("\0<", 2);
 }
 
+/// Facets of STL text with more than three vertices, of which the library would take three.
+std::string distrust_stl_loops(std::string_view text) {
+  std::size_t vertices = 0, number = 0;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    ++number;
+    if (line.starts_with("vertex") && ++vertices > 3)
+      return fmt::format("has a facet of more than three vertices, in line {}", number);
+    if (line.starts_with("endloop")) vertices = 0;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string distrust_stl(std::string_view bytes) {
@@ -62,9 +81,13 @@ std::string distrust_stl(std::string_view bytes) {
   if (start.substr(0, 5) == "solid" && start.find('\0') == std::string_view::npos) {
     const std::string_view end = trimmed(bytes);
     const std::size_t last = end.find_last_of('\n');
-    if (trimmed(end.substr(last == std::string_view::npos ? 0 : last)).substr(0, 8) == "endsolid") return {};
-    return "is cut short: it does not end with 'endsolid'";
+    if (trimmed(end.substr(last == std::string_view::npos ? 0 : last)).substr(0, 8) != "endsolid")
+      return "does not end with 'endsolid': it is cut short, or something follows";
+    return distrust_stl_loops(bytes);
   }
+  constexpr std::string_view kCapitals = "SOLID";
+  if (start.substr(0, 5) == kCapitals && start.find('\0') == std::string_view::npos)
+    return "is STL text in capitals; its words must be in small letters";
   if (bytes.size() < kHeader)
     return fmt::format("is cut short: a binary STL has at least {} bytes, it has {}", kHeader, bytes.size());
   return fmt::format("{}: its {} facets take {} bytes, it has {}",
@@ -116,24 +139,46 @@ std::string distrust_off(std::string_view bytes) {
 
 namespace {
 
-/// Faces of an OBJ: indices from 1 on, or from −1 back.
-std::string distrust_obj_face(std::string_view line, std::uint64_t before, std::uint64_t all,
+/// How many vertices, places on a texture and normals an OBJ has.
+using ObjCounts = std::array<std::uint64_t, 3>;
+
+/// Faces of an OBJ: indices from 1 on, or from −1 back. Normals and places on a texture are of no use, but
+/// the library drops a face whose are beyond their lists.
+std::string distrust_obj_face(std::string_view line, const ObjCounts& before, const ObjCounts& all,
                               std::size_t number) {
+  constexpr std::array<const char*, 3> kNames = {"vertex", "texture", "normal"};
   while (!line.empty()) {
     const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-    std::string_view word = line.substr(0, end);
+    const std::string_view word = line.substr(0, end);
     line = trimmed(line.substr(end));
-    const std::string_view index = word.substr(0, word.find('/'));
-    std::int64_t value = 0;
-    const auto [rest, error] = std::from_chars(index.data(), index.data() + index.size(), value);
-    if (error != std::errc() || rest != index.data() + index.size())
-      return fmt::format("has '{}' for a vertex in line {}", word.substr(0, 40), number);
-    if (value == 0) return fmt::format("has vertex index 0 in line {}; they begin with 1", number);
-    if (value > 0 ? static_cast<std::uint64_t>(value) > all : static_cast<std::uint64_t>(-value) > before)
-      return fmt::format("has vertex index {} in line {}, beyond the vertex list (size {})", value, number,
-                         value > 0 ? all : before);
+    std::string_view rest = word;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t slash = rest.find('/');
+      const std::string_view index = rest.substr(0, slash);
+      rest = slash == std::string_view::npos ? std::string_view() : rest.substr(slash + 1);
+      if (k > 0 && index.empty()) continue;
+      std::int64_t value = 0;
+      const auto [after, error] = std::from_chars(index.data(), index.data() + index.size(), value);
+      if (error != std::errc() || after != index.data() + index.size())
+        return fmt::format("has '{}' for a vertex in line {}", word.substr(0, 40), number);
+      if (value == 0) return fmt::format("has {} index 0 in line {}; they begin with 1", kNames[k], number);
+      if (value > 0 ? static_cast<std::uint64_t>(value) > all[k]
+                    : static_cast<std::uint64_t>(-value) > before[k])
+        return fmt::format("has {} index {} in line {}, beyond the {} list (size {})", kNames[k], value,
+                           number, kNames[k], value > 0 ? all[k] : before[k]);
+    }
   }
   return {};
+}
+
+/// Which of an OBJ's lists a line is of.
+std::optional<std::size_t> obj_list(std::string_view line) {
+  if (line.size() < 3 || line[0] != 'v') return std::nullopt;
+  if (blank(line[1])) return 0;
+  if (!blank(line[2])) return std::nullopt;
+  return line[1] == 't'   ? std::optional<std::size_t>(1)
+         : line[1] == 'n' ? std::optional<std::size_t>(2)
+                          : std::nullopt;
 }
 
 }  // namespace
@@ -152,17 +197,27 @@ std::string distrust_obj(std::string_view bytes) {
     bytes = joined;
   }
   // Twice: vertices may stand behind the faces that name them.
-  std::uint64_t all = 0;
+  ObjCounts all{};
+  std::map<std::string_view, std::size_t> objects;  // and the line where each begins
+  std::string_view object;
   for (const bool count : {true, false}) {
-    std::uint64_t before = 0;
+    ObjCounts before{};
     std::size_t number = 0;
     for (std::string_view text = bytes; !text.empty();) {
       const std::size_t end = text.find('\n');
       std::string_view line = trimmed(text.substr(0, end));
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
       ++number;
+      if (const auto list = obj_list(line)) ++(count ? all : before)[*list];
       if (line.size() < 2 || !blank(line[1])) continue;
-      if (line[0] == 'v') ++(count ? all : before);
+      if (count && line[0] == 'o' && trimmed(line.substr(1)) != object) {
+        object = trimmed(line.substr(1));
+        if (const auto [at, first] = objects.emplace(object, number); !first)
+          return fmt::format(
+              "has an object '{}' in line {} and another one in line {}; give each a name of "
+              "its own, or their triangles get mixed up",
+              one_line(std::string(object.substr(0, 60))), at->second, number);
+      }
       if (count || line[0] != 'f') continue;
       line = trimmed(line.substr(
           1, line.find('#') == std::string_view::npos ? std::string_view::npos : line.find('#') - 1));

@@ -1,5 +1,7 @@
 #include "model/scene/scene_json.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -190,8 +192,10 @@ std::optional<std::size_t> SceneObject::choice(const char* key,
 }
 
 json parse_scene_text(const std::string& file, const std::string& text) {
+  constexpr int kDeepest = 64;  // values are printed and taken apart by recursion (chosen)
   Place place;
-  const auto watch = [&](int, json::parse_event_t event, json& value) {
+  const auto watch = [&](int depth, json::parse_event_t event, json& value) {
+    if (depth > kDeepest) throw SceneFault{fmt::format("{}: it nests more than {} deep", file, kDeepest)};
     switch (event) {
       case json::parse_event_t::object_start:
         place.open(false);

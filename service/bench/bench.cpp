@@ -7,6 +7,7 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 
+#include "service/cli/number_range.h"
 #include "service/cli/output_folder.h"
 
 namespace palpate {
@@ -262,7 +263,7 @@ class Benches {
         ->add_option("--reach", options_.reach,
                      "poses are moved and turned at random, by up to so many radii of the tool and radians, "
                      "mostly by far less; 0: as they are (0.5)")
-        ->check(CLI::Range(0.0, 1000.0).description(""))
+        ->check(within_numbers(0, 1000))
         ->type_name("X");
     add_one_backend(*questions, options_);
     questions->footer(
@@ -349,7 +350,7 @@ class Benches {
         "jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
     add_common(*jitter, options_);
     jitter->add_option("--seconds", options_.seconds, "how long (60)")
-        ->check(CLI::Range(0.1, 86400.0).description(""))
+        ->check(within_numbers(0.1, 86400))
         ->type_name("S");
     add_one_backend(*jitter, options_);
     jitter->footer(

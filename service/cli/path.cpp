@@ -162,6 +162,10 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
   const std::string engine =
       backend.name() + " on " + backend.device() +
       (backend.measured_by() == backend.name() ? "" : ", distances by " + backend.measured_by());
+  // Before the files, which may fail: what was examined is told.
+  const std::string line =
+      json_of(scene, *report, engine, false).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (auto printed = print_text(line); !printed) return printed;
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     std::error_code error;
@@ -178,9 +182,6 @@ Result<void> path_command(const PathOptions& options, const Parts& parts) {
         !done)
       return done;
   }
-  const std::string line =
-      json_of(scene, *report, engine, false).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (auto printed = print_text(line); !printed) return printed;
   if (report->clear()) return {};
   if (report->moments[*report->first_screw].undecided)
     return Error{

@@ -59,11 +59,18 @@ void add_serve_command(CLI::App& app, ServeOptions& options, const Parts& parts,
             "memory of all prepared scenes; who is unused longest goes; default 4096");
   mebibytes("--disk", options.limits.disk_bytes, "disk of all uploads; default 8192");
   mebibytes("--max-upload", options.limits.upload_bytes, "largest upload; default 512");
-  serve_app->add_option("--max-triangles", options.limits.triangles, "of a scene; default 10000000")
-      ->type_name("N");
-  serve_app->add_option("--max-poses", options.limits.poses, "of a query; default 100000")->type_name("N");
-  serve_app->add_option("--max-connections", options.limits.connections, "at a time; default 1024")
-      ->type_name("N");
+  const auto count = [&](const char* flag, auto& out, std::int64_t most, const char* text) {
+    serve_app
+        ->add_option_function<std::int64_t>(
+            flag,
+            [&out](const std::int64_t& given) { out = static_cast<std::decay_t<decltype(out)>>(given); },
+            text)
+        ->check(CLI::Range(std::int64_t{1}, most).description(""))
+        ->type_name("N");
+  };
+  count("--max-triangles", options.limits.triangles, std::int64_t{1} << 31, "of a scene; default 10000000");
+  count("--max-poses", options.limits.poses, 1'000'000'000, "of a query; default 100000");
+  count("--max-connections", options.limits.connections, 1'000'000, "at a time; default 1024");
   serve_app->footer(kServeFooter);
   serve_app->callback([&] { outcome = serve(options, parts); });
 }

@@ -14,7 +14,7 @@ Result<void> write_text(const std::filesystem::path& path, std::string_view text
 }
 
 Result<void> print_text(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
   return Error{ErrorCode::kInternal, "standard output can't be written"};
 }
 

@@ -19,6 +19,7 @@
 #include "service/bench/error/error_sweep.h"
 #include "service/bench/output.h"
 #include "service/bench/scene_subject.h"
+#include "service/cli/number_range.h"
 #include "service/cli/numbers.h"
 #include "service/cli/promise.h"
 #include "service/cli/scene_host.h"
@@ -413,7 +414,7 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
   tune->add_option("--budget-us", options.budget_us,
                    "microseconds that 95 % of the frames in contact may take")
       ->required()
-      ->check(CLI::Range(1e-3, 1e9).description(""))
+      ->check(within_numbers(1e-3, 1e9))
       ->type_name("N");
   tune->add_option("--poses", options.bench.poses,
                    "poses, as for query; without it the path's, deeper than a hand gets")

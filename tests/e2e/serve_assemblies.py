@@ -159,6 +159,8 @@ def test_a_part_is_taken_out_and_the_contact_at_the_start_can_be_left_out():
         without = server.ready(
             server.ask('POST', '/v1/scenes', {'path': 'pump/scene.json', 'start': 'ignore_initial'})
         )
+        paper = {'path': 'pump/scene.json', 'start': 'ignore_initial', 'profile': 'paper'}
+        expect(server.ask('POST', '/v1/scenes', paper).status == 400, 'in paper nothing is left out')
         expect(
             as_written != without and server.ask('GET', f'/v1/scenes/{without}').json()['ignores_initial'],
             'two scenes',

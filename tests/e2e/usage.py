@@ -96,6 +96,19 @@ def test_a_full_disk_is_told_by_whatever_is_printed():
         expect(done.returncode == 1 and "standard output can't be written" in done.stderr, done)
 
 
+def test_a_path_whose_answer_cannot_be_printed_is_told():
+    folder = Folder()
+    folder.write('path.csv', 'x,y,z,qx,qy,qz,qw\n0,0,0.03,0,0,0,1\n0,0,0.01,0,0,0,1\n')
+    words = ('path', folder.save(), folder / 'path.csv', '--backend', 'cpu', '-q')
+    with open('/dev/full', 'w') as full:
+        done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+    expect(done.returncode == 1 and "standard output can't be written" in done.stderr, done)
+    # What was examined is told before a file that can't be written.
+    folder.write('taken/path.csv/none', '')
+    done = palpate(*words, '--out', folder / 'taken', '--overwrite')
+    expect(done.code == 3 and 'path.csv' in done.err and json.loads(done.out)['clear'] is False, done)
+
+
 def test_a_flag_without_its_value_is_wrong_usage():
     expect_refused(palpate('query', 'x.json', '--pose'), 2, '--pose')
 
@@ -106,6 +119,11 @@ def test_a_bad_word_for_a_flag_is_a_bad_value():
     expect_refused(palpate('run', 'x.json', '--pace', 'slow'), 3, 'slow')
     expect_refused(palpate('run', 'x.json', '--duration', '-1'), 3, '-1')
     expect_refused(palpate('run', 'x.json', '--duration', 'nan'), 3, 'nan')
+    expect_refused(palpate('tune', 'x.json', '--budget-us', 'nan'), 3, '--budget-us', 'nan')
+    expect_refused(palpate('bench', 'questions', 'x.json', '--out', 'none', '--reach', 'nan'), 3, 'nan')
+    for limit in ('--max-poses', '--max-triangles', '--max-connections'):
+        for count in ('0', '-3', '99999999999999999999', 'many'):
+            expect_refused(palpate('serve', limit, count), 3, limit)
     expect_refused(palpate('query', 'x.json', '--pose', '0 0 0 0 0 0 1', '--batch', '0'), 3, '--batch')
 
 

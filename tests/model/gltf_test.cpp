@@ -115,6 +115,12 @@ TEST_F(MeshImport, AbsurdGltfIsRefused) {
               HasSubstr("beyond its buffer view"));
   EXPECT_THAT(refused(write("huge.gltf", gltf(R"([{"mesh":0}])", "[0]", "99999999999"))),
               HasSubstr("99999999999 entries"));
+  const auto requires_extension = [&](const std::string& name) {
+    return gltf(R"([{"mesh":0}])").replace(0, 1, R"({"extensionsRequired":[")" + name + R"("],)");
+  };
+  EXPECT_THAT(refused(write("instances.gltf", requires_extension("EXT_mesh_gpu_instancing"))),
+              HasSubstr("requires the extension 'EXT_mesh_gpu_instancing'"));
+  EXPECT_EQ(read(write("unlit.gltf", requires_extension("KHR_materials_unlit"))).triangles.size(), 1u);
   EXPECT_THAT(refused(write("json.gltf", "{\"asset\": ")), HasSubstr("no valid JSON"));
   EXPECT_THAT(refused(write("deep.gltf", std::string(100000, '['))), HasSubstr("deep"));
   std::string doubling = "[";

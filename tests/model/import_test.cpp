@@ -390,6 +390,11 @@ TEST_F(MeshImport, ObjIndicesAndEncodingsAreChecked) {
   EXPECT_THAT(refused(write("d.obj", vertices + "f 1 2 4\n")), HasSubstr("vertex index 4 in line 4"));
   EXPECT_THAT(refused(write("e.obj", vertices + "f 0 1 2\n")), HasSubstr("vertex index 0 in line 4"));
   EXPECT_THAT(refused(write("f.obj", vertices + "f 1 2 x\n")), HasSubstr("'x' for a vertex in line 4"));
+  EXPECT_EQ(read(write("n.obj", vertices + "vt 0 0\nvn 0 0 1\nf 1/1/1 2//-1 3/-1\n")).triangles.size(), 1u);
+  EXPECT_THAT(refused(write("t.obj", vertices + "f 1 2 3\nf 1/1 2/1 3/1\n")),
+              HasSubstr("texture index 1 in line 5, beyond the texture list (size 0)"));
+  EXPECT_THAT(refused(write("n0.obj", vertices + "vn 0 0 1\nf 1//1 2//2 3//1\n")),
+              HasSubstr("normal index 2 in line 5, beyond the normal list (size 1)"));
   std::string wide("\xFF\xFE", 2);
   for (const char c : vertices + "f 1 2 3\n") wide += {c, '\0'};
   EXPECT_THAT(refused(write("g.obj", wide)), HasSubstr("is UTF-16 text"));
@@ -415,6 +420,23 @@ TEST_F(MeshImport, AColladaFileWithOddIndicesOrCountsIsRefused) {
   EXPECT_THAT(
       refused(write("c.dae", "<COLLADA><float_array count=\"99999999999\">0</float_array></COLLADA>")),
       HasSubstr("count of '99999999999'"));
+}
+
+// The library gave the second A's faces to B.
+TEST_F(MeshImport, AnObjWithTwoObjectsOfOneNameIsRefused) {
+  const std::string a = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+  EXPECT_EQ(read(write("once.obj", "o A\n" + a + "o A\n" + a + "o B\n" + a)).triangles.size(), 3u);
+  EXPECT_THAT(refused(write("twice.obj", "o A\n" + a + "o B\n" + a + "o A\n" + a)),
+              HasSubstr("object 'A' in line 1 and another one in line 11"));
+}
+
+// The library took three of them.
+TEST_F(MeshImport, AnStlFacetOfFourVerticesIsRefused) {
+  std::string ascii = ascii_stl();
+  ascii.insert(ascii.find("endloop"), "vertex 1 1 0\n");
+  EXPECT_THAT(refused(write("a.stl", ascii)), HasSubstr("a facet of more than three vertices, in line 7"));
+  EXPECT_THAT(refused(write("b.stl", "SOLID s\n" + std::string(200, ' ') + "\nENDSOLID s\n")),
+              HasSubstr("in capitals"));
 }
 
 TEST_F(MeshImport, TruncatedStlIsRefused) {

@@ -232,7 +232,10 @@ TEST(SceneFile, SyntaxHasLineAndColumnAndAKeyStandsOnlyOnce) {
   EXPECT_THAT(fault_of("{\"\xc3(\": 1}"), HasSubstr("ill-formed UTF-8"));
   EXPECT_EQ(fault_of(R"({"static": [{"mesh": "a.stl"}, {"mesh": "a.stl", "mesh": "b.stl"}]})"),
             "s.json: /static/1/mesh stands there twice");
-  EXPECT_NE(fault_of(std::string(100'000, '[')), "");  // deep nesting is no way to crash
+  // Deep nesting is no way to crash, neither the reader nor what prints or frees what was read.
+  EXPECT_THAT(fault_of(std::string(100'000, '[')), HasSubstr("nests more than 64 deep"));
+  EXPECT_THAT(fault_of("{\"static\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}"),
+              HasSubstr("nests more than 64 deep"));
 }
 
 TEST(SceneFile, AMissingFileAndADirectoryAreSaidToBe) {

@@ -188,6 +188,9 @@ HttpResponse add_named(const std::string& body, SceneStore& store, const ServerL
   if (json.contains("start") && json["start"] != "as_written" && json["start"] != "ignore_initial")
     return bad_request("\"start\" is as_written or ignore_initial", "start");
   const bool ignore_initial = json.contains("start") && json["start"] == "ignore_initial";
+  if (ignore_initial && profile == Profile::kPaper)
+    return bad_request("\"start\" ignore_initial is of profile refined; in paper contacts of the start push",
+                       "start");
   if (root.empty())
     return Problem{404, "not-found", "this server has no folder of scenes (see --root); upload one", "path"};
   const bool sane = !path.empty() && path.size() <= 1024 && path.find('\0') == std::string::npos;
