@@ -333,7 +333,10 @@ void RemoteLoops::answer(Loop& loop) {
   SocketMessage message;
   const Contacts& contacts = loop.slot.contacts;
   const ContactResponse& response = loop.slot.response;
-  const double stiffness = (*loop.use)->loaded.scene.response.stiffness_n_per_m;
+  const LoadedScene& loaded = (*loop.use)->loaded;
+  const double stiffness = loaded.scene.response.stiffness_n_per_m;
+  // Also where the tool is too far away for the lattice.
+  const Vec3 gc = pose->pose.position + pose->pose.rotation * loaded.geometry.tool_gc_m;
   std::vector<AreaResponse> areas;
   if (!pose->planes) areas = loop.field ? felt_area(response, stiffness) : response.areas;
   if (!solved) {
@@ -347,7 +350,7 @@ void RemoteLoops::answer(Loop& loop) {
     const auto put_vector = [&](const Vec3& v) {
       for (int i = 0; i < 3; ++i) put(double{v[i]});
     };
-    put_wrench_head(*pose, response.told(), response.gc, us, skipped,
+    put_wrench_head(*pose, response.told(), gc, us, skipped,
                     (contacts.contact ? kContact : 0u) | (contacts.truncated ? kTruncated : 0u),
                     static_cast<std::uint32_t>(areas.size()), out);
     for (const AreaResponse& area : areas) {
@@ -364,7 +367,7 @@ void RemoteLoops::answer(Loop& loop) {
         R"({{"type":"wrench","seq":{},"time":{},"skipped":{},"server_us":{:.1f},"contact":{},"truncated":{},"engine":{},"pairs":{},"gc":{},"force":{},"torque":{},"areas":[)",
         pose->seq, json_text(pose->time), skipped, us, contacts.contact, contacts.truncated,
         *contacts.engine != 0 ? fmt::format("\"{}\"", contacts.engine) : "null", contacts.pairs,
-        json_text(response.gc), json_text(response.told().force), json_text(response.told().torque));
+        json_text(gc), json_text(response.told().force), json_text(response.told().torque));
     for (std::size_t i = 0; i < areas.size(); ++i) {
       const AreaResponse& area = areas[i];
       fmt::format_to(std::back_inserter(out),
