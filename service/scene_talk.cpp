@@ -140,7 +140,7 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
         own[c] += 0x1p-30 * pose->rotation_q30[r][c] * (static_cast<double>(p[r]) - pose->translation[r]);
     return own;
   };
-  const std::string vote = "what is inside it is a majority vote (docs/EXACTNESS.md, section 2)";
+  const std::string vote = "what is inside it is a vote (docs/EXACTNESS.md, sections 2 and 4)";
   if (!geometry.mockup.closed && backend.has_internal_voxels())
     out.bodies.push_back(
         "the mock-up is not closed: " + vote +

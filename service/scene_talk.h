@@ -14,7 +14,7 @@ struct SceneTalk {
   /// How deep the tool starts, where and between which parts; of a contact without a depth, and in `paper`,
   /// that it touches. Empty when it is free.
   std::vector<std::string> start;
-  /// `refined`: whose inside is a majority vote, and of how many of the triangles that touch there it is in
+  /// `refined`: whose inside is a vote, and of how many of the triangles that touch there it is in
   /// doubt on which side they are; whose walls are so thin that the device pushes through.
   std::vector<std::string> bodies;
 };

@@ -180,7 +180,7 @@ def test_where_an_open_body_leaves_its_inside_in_doubt_it_is_said():
         done = palpate('query', scene, '--pose', f'0 0 {z} 0 0 0 1', '--json')
         expect(done.code == 0, done)
         told[place] = re.search(
-            r'majority vote.*?(?:; (none|\d+) of (\d+) triangles of the tool|$)', done.err, re.M
+            r'is a vote .*?(?:; (none|\d+) of (\d+) triangles of the tool|$)', done.err, re.M
         )
         expect(told[place], done)
     expect(int(told['mouth'][1]) >= 2, told)  # a face of the plate, right above the mouth
