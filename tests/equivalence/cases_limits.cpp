@@ -458,6 +458,20 @@ Case flat_tool() {
               });
 }
 
+/// Plates on each other, one a voxel, so that all voxels hold some: in its middle no walk of the vote is
+/// short. One lacks a side, so all is open.
+Case heap_of_plates() {
+  constexpr std::int32_t kHalf = 12 * kVoxel;
+  Triangles heap = box_of(Int3(-kHalf, -kHalf, -kHalf), Int3(kHalf, kHalf, 3 * kVoxel / 8 - kHalf));
+  heap.resize(10);
+  for (std::int32_t z = kVoxel - kHalf; z < kHalf; z += kVoxel)
+    append(heap, box_of(Int3(-kHalf, -kHalf, z), Int3(kHalf, kHalf, z + 3 * kVoxel / 8)));
+  return rule("heap_of_plates",
+              "samples in voxels of an open mock-up of which all walks of the vote are long", heap,
+              box_of(Int3(-kVoxel, -kVoxel, -kVoxel), Int3(kVoxel, kVoxel, kVoxel)),
+              [](const SceneGeometry&, Random& random, Known&) { return unturned(any(random, 2 * kVoxel)); });
+}
+
 }  // namespace
 
 std::vector<Case> limit_cases() {
@@ -483,7 +497,8 @@ std::vector<Case> limit_cases() {
           large_sheet_among_small(),
           deep_boxes_and_needles(),
           pole_in_an_open_cup(),
-          flat_tool()};
+          flat_tool(),
+          heap_of_plates()};
 }
 
 }  // namespace palpate::equivalence
