@@ -18,9 +18,13 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 def test_a_run_gives_what_it_left(clamp, tmp_path):
     done = palpate.Scene(clamp, engine='cpu').run(tmp_path / 'out', duration=0.2)
     assert len(done.trace) > 100 and done.summary and (done.folder / 'report.html').is_file()
-    with pytest.raises(palpate.PalpateError, match="device 'abacus' can't keep") as raised:
-        palpate.Scene(clamp, engine='cpu').run(tmp_path / 'other', device='abacus')
-    assert raised.value.code == 2
+    for device, words, code in (
+        ('abacus', "unknown haptic device 'abacus'", 3),
+        ('falcon', "device 'falcon' can't keep", 2),
+    ):
+        with pytest.raises(palpate.PalpateError, match=words) as raised:
+            palpate.Scene(clamp, engine='cpu').run(tmp_path / 'other', device=device)
+        assert raised.value.code == code
 
 
 def test_a_run_needs_a_file(boxes, tmp_path):
