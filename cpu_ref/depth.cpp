@@ -107,7 +107,7 @@ int crossed(const LatticeMesh& mesh, const BoxTree& tree, const Int3& from, cons
   return net;
 }
 
-constexpr int kNear = 8;  // voxels
+constexpr int kNear = 8;  // voxels (docs/EXACTNESS.md section 4)
 
 /// How many shells a V_bnd voxel's middle is in: of six walks to the next voxels that are not V_bnd the one
 /// that says least is right, a near one before all that are far.

@@ -85,8 +85,7 @@ std::string distrust_stl(std::string_view bytes) {
       return "does not end with 'endsolid': it is cut short, or something follows";
     return distrust_stl_loops(bytes);
   }
-  constexpr std::string_view kCapitals = "SOLID";
-  if (start.substr(0, 5) == kCapitals && start.find('\0') == std::string_view::npos)
+  if (start.substr(0, 5) == "SOLID" && start.find('\0') == std::string_view::npos)
     return "is STL text in capitals; its words must be in small letters";
   if (bytes.size() < kHeader)
     return fmt::format("is cut short: a binary STL has at least {} bytes, it has {}", kHeader, bytes.size());

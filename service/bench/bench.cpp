@@ -260,10 +260,10 @@ class Benches {
     add_common(*questions, options_);
     add_poses(*questions, options_);
     questions
-        ->add_option("--reach", options_.reach,
-                     "poses are moved and turned at random, by up to so many radii of the tool and radians, "
-                     "mostly by far less; 0: as they are (0.5)")
-        ->check(within_numbers(0, 1000))
+        ->add_option_function<double>(
+            "--reach", number_within("--reach", 0, 1000, options_.reach),
+            "poses are moved and turned at random, by up to so many radii of the tool and radians, "
+            "mostly by far less; 0: as they are (0.5)")
         ->type_name("X");
     add_one_backend(*questions, options_);
     questions->footer(
@@ -349,8 +349,9 @@ class Benches {
     CLI::App* jitter = bench_.add_subcommand(
         "jitter", "how late the 1 kHz loop's ticks come under full load; cyclictest beside it");
     add_common(*jitter, options_);
-    jitter->add_option("--seconds", options_.seconds, "how long (60)")
-        ->check(within_numbers(0.1, 86400))
+    jitter
+        ->add_option_function<double>("--seconds", number_within("--seconds", 0.1, 86400, options_.seconds),
+                                      "how long (60)")
         ->type_name("S");
     add_one_backend(*jitter, options_);
     jitter->footer(

@@ -24,6 +24,7 @@
 #include "service/cli/compare.h"
 #include "service/cli/console.h"
 #include "service/cli/manual.h"
+#include "service/cli/number_range.h"
 #include "service/cli/output_folder.h"
 #include "service/cli/path.h"
 #include "service/cli/serve.h"
@@ -95,15 +96,6 @@ CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
           "near the start, else cpu, with a sentence on standard error (auto)")
       ->check(one_of({"auto", "gpu", "cpu", "ref"}))
       ->type_name("auto|gpu|cpu|ref");
-}
-
-/// CLI::Range would let nan pass.
-std::function<void(const double&)> number_within(const char* name, double least, double most, double& out) {
-  return [=, &out](const double& value) {
-    if (!(value >= least && value <= most))
-      throw CLI::ValidationError(name, fmt::format("{} is not from {} to {}", value, least, most));
-    out = value;
-  };
 }
 
 void add_import_limits(CLI::App& app, ImportLimits& limits) {

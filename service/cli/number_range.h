@@ -1,21 +1,19 @@
 #pragma once
 #include <fmt/format.h>
-#include <CLI/Validators.hpp>
-#include <cstdlib>
-#include <string>
+#include <CLI/Error.hpp>
+#include <functional>
 
 namespace palpate {
 
-/// For an option that is a number: from `least` to `most`, and one at all. CLI::Range would let nan pass.
-inline CLI::Validator within_numbers(double least, double most) {
-  return CLI::Validator(
-      [=](std::string& text) {
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        const bool inside = end != text.c_str() && *end == '\0' && value >= least && value <= most;
-        return inside ? std::string() : fmt::format("{} is not from {} to {}", text, least, most);
-      },
-      "");
+/// Takes the value of an option `name` that is a number from `least` to `most` into `out`, which outlives the
+/// parsing. CLI::Range would let nan pass.
+inline std::function<void(const double&)> number_within(const char* name, double least, double most,
+                                                        double& out) {
+  return [=, &out](const double& value) {
+    if (!(value >= least && value <= most))
+      throw CLI::ValidationError(name, fmt::format("{} is not from {} to {}", value, least, most));
+    out = value;
+  };
 }
 
 }  // namespace palpate

@@ -59,6 +59,7 @@ void add_serve_command(CLI::App& app, ServeOptions& options, const Parts& parts,
             "memory of all prepared scenes; who is unused longest goes; default 4096");
   mebibytes("--disk", options.limits.disk_bytes, "disk of all uploads; default 8192");
   mebibytes("--max-upload", options.limits.upload_bytes, "largest upload; default 512");
+  // Up to far more than a machine has room for (chosen).
   const auto count = [&](const char* flag, auto& out, std::int64_t most, const char* text) {
     serve_app
         ->add_option_function<std::int64_t>(

@@ -411,10 +411,9 @@ void add_tune_command(CLI::App& app, TuneOptions& options, const Parts& parts, R
       ->required()
       ->expected(1)
       ->type_name("SCENE");
-  tune->add_option("--budget-us", options.budget_us,
-                   "microseconds that 95 % of the frames in contact may take")
+  tune->add_option_function<double>("--budget-us", number_within("--budget-us", 1e-3, 1e9, options.budget_us),
+                                    "microseconds that 95 % of the frames in contact may take")
       ->required()
-      ->check(within_numbers(1e-3, 1e9))
       ->type_name("N");
   tune->add_option("--poses", options.bench.poses,
                    "poses, as for query; without it the path's, deeper than a hand gets")

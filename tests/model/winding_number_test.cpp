@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kOff = 0.05;  // as the header has it
+constexpr double kOff = 0.05;  // a fifth of the quarter by which a triangle comes to be in doubt
 
 struct Built {
   Lattice lattice;

@@ -20,7 +20,7 @@ using namespace gpu;  // names of shaders/shared/scene.h
 
 namespace {
 
-constexpr int kNearWalk = 8;  // voxels (EXACTNESS, section 4)
+constexpr int kNearWalk = 8;  // voxels (docs/EXACTNESS.md section 4)
 
 bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) {
   return (mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0;
