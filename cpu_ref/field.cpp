@@ -6,6 +6,7 @@
 
 #include "cpu_ref/depth.h"
 #include "cpu_ref/direction.h"
+#include "cpu_ref/exact.h"
 #include "cpu_ref/samples.h"
 #include "cpu_ref/sets.h"
 
@@ -15,6 +16,11 @@ namespace {
 void add(WideSum& sum, std::int64_t term) {
   sum.low += term & 0xFFFFFFFF;
   sum.high += term >> 32;
+}
+
+/// floor(a·b / 1024).
+std::int64_t over_1024(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>((Int128{a} * b) >> 10);
 }
 
 /// A sample that lies inside the other body.
@@ -144,7 +150,7 @@ class Summing {
     for (int k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(k);
       add(bin.push[i], p * (push.along[k] >> 10));
-      add(bin.turn[i], (p >> 10) * (turned[k] >> 30));
+      add(bin.turn[i], over_1024(p, turned[k] >> 30));
     }
     // How the force gives way along the push: w (n·u), as the force law and the solver need it.
     std::int64_t steep = 0;
@@ -182,7 +188,7 @@ class Summing {
     for (int k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(k);
       add(carrier.push[i], whole * (push.along[k] >> 10));
-      add(carrier.moment[i], (whole >> 10) * r[k]);
+      add(carrier.moment[i], over_1024(whole, r[k]));
     }
   }
 

@@ -62,7 +62,7 @@ struct CarrierSums {
   std::int64_t weight_sum = 0;      ///< Σ w, Q24
   std::int64_t depth_sum = 0;       ///< Σ P
   std::array<WideSum, 3> push{};    ///< Σ P n
-  std::array<WideSum, 3> moment{};  ///< Σ (P >> 10) r
+  std::array<WideSum, 3> moment{};  ///< Σ (P r) >> 10
   bool operator==(const CarrierSums&) const = default;
   /// Adds what another part of its samples says; the id stays.
   CarrierSums& operator+=(const CarrierSums& more) {

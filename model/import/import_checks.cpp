@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "model/files/one_line.h"
+#include "model/import/text_numbers.h"
 
 namespace palpate {
 namespace {
@@ -54,17 +55,20 @@ bool is_utf16(std::string_view bytes) {
          begin == std::string_view("<\0", 2) || begin == std::string_view("\0<", 2);
 }
 
-/// Facets of STL text with more than three vertices, of which the library would take three.
-std::string distrust_stl_loops(std::string_view text) {
+/// Facets of STL text with more than three vertices, of which the library would take three, and their
+/// numbers.
+std::string distrust_stl_facets(std::string_view text) {
   std::size_t vertices = 0, number = 0;
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
+    std::string_view line = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     ++number;
-    if (line.starts_with("vertex") && ++vertices > 3)
-      return fmt::format("has a facet of more than three vertices, in line {}", number);
-    if (line.starts_with("endloop")) vertices = 0;
+    const std::string_view word = take_word(line);
+    if (word == "endloop") vertices = 0;
+    if (word != "vertex") continue;
+    if (++vertices > 3) return fmt::format("has a facet of more than three vertices, in line {}", number);
+    if (std::string wrong = distrust_numbers(line, 3, "line", number); !wrong.empty()) return wrong;
   }
   return {};
 }
@@ -83,7 +87,7 @@ std::string distrust_stl(std::string_view bytes) {
     const std::size_t last = end.find_last_of('\n');
     if (trimmed(end.substr(last == std::string_view::npos ? 0 : last)).substr(0, 8) != "endsolid")
       return "does not end with 'endsolid': it is cut short, or something follows";
-    return distrust_stl_loops(bytes);
+    return distrust_stl_facets(bytes);
   }
   if (start.substr(0, 5) == "SOLID" && start.find('\0') == std::string_view::npos)
     return "is STL text in capitals; its words must be in small letters";
@@ -110,9 +114,11 @@ std::string distrust_off(std::string_view bytes) {
   if (vertices > size / 6 || faces > size / 4)
     return fmt::format("promises {} vertices and {} faces, more than its {} bytes can hold", vertices, faces,
                        size);
-  for (std::uint64_t v = 0; v < vertices; ++v)
-    if (next_line(bytes).empty())
-      return fmt::format("is cut short: it promises {} vertices and has {}", vertices, v);
+  for (std::uint64_t v = 0; v < vertices; ++v) {
+    line = next_line(bytes);
+    if (line.empty()) return fmt::format("is cut short: it promises {} vertices and has {}", vertices, v);
+    if (std::string wrong = distrust_numbers(line, 3, "vertex", v); !wrong.empty()) return wrong;
+  }
   for (std::uint64_t f = 0; f < faces; ++f) {
     line = next_line(bytes);
     if (line.empty()) return fmt::format("is cut short: it promises {} faces and has {}", faces, f);
@@ -170,6 +176,18 @@ std::string distrust_obj_face(std::string_view line, const ObjCounts& before, co
   return {};
 }
 
+/// Vertices of an OBJ, places on a texture and normals. The library leaves out a vertex of another number of
+/// numbers than these, and then takes the next one for it.
+std::string distrust_obj_numbers(std::string_view line, std::size_t list, std::size_t number) {
+  line = line.substr(0, line.find('#'));
+  take_word(line);
+  std::size_t count = 0;
+  for (std::string_view rest = line; !take_word(rest).empty();) ++count;
+  if (list == 0 && count != 3 && count != 4 && count != 6)
+    return fmt::format("has a vertex of {} numbers in line {}; of 3, 4 or 6 it can be read", count, number);
+  return distrust_numbers(line, count, "line", number);
+}
+
 /// Which of an OBJ's lists a line is of.
 std::optional<std::size_t> obj_list(std::string_view line) {
   if (line.size() < 3 || line[0] != 'v') return std::nullopt;
@@ -207,7 +225,11 @@ std::string distrust_obj(std::string_view bytes) {
       std::string_view line = trimmed(text.substr(0, end));
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
       ++number;
-      if (const auto list = obj_list(line)) ++(count ? all : before)[*list];
+      if (const auto list = obj_list(line)) {
+        ++(count ? all : before)[*list];
+        if (count)
+          if (std::string wrong = distrust_obj_numbers(line, *list, number); !wrong.empty()) return wrong;
+      }
       if (line.size() < 2 || !blank(line[1])) continue;
       if (count && line[0] == 'o' && trimmed(line.substr(1)) != object) {
         object = trimmed(line.substr(1));
@@ -343,6 +365,16 @@ std::string distrust_dae(std::string_view bytes) {
                    : fmt::format("has a byte {:#x} among its vertex indices",
                                  static_cast<unsigned char>(content[odd]));
       if (is("<p") && content.find('-') < content.size()) return "has '-' among its vertex indices";
+    }
+    for (const std::string_view of : {"float_array", "matrix", "translate", "rotate", "scale"}) {
+      if (tag.size() <= of.size() || tag.substr(1, of.size()) != of || !is(rest.substr(0, of.size() + 1)))
+        continue;
+      std::string_view content = rest.substr(tag.size(), rest.find('<', tag.size()) - tag.size());
+      if (content.starts_with('>')) content.remove_prefix(1);
+      for (std::string_view word = take_word(content); !word.empty(); word = take_word(content))
+        if (!is_decimal(word))
+          return fmt::format("has '{}' for a number of a <{}>", one_line(std::string(word.substr(0, 40))),
+                             of);
     }
     if (is("<node")) {
       std::string id = attribute(tag, " id=");

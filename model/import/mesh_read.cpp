@@ -349,6 +349,33 @@ std::string with_a_first_byte(std::string_view bytes) {
   return out;
 }
 
+/// An OBJ with 0.5 for .5 where a number begins with its point, for there the library ends a line of numbers;
+/// empty where none does.
+std::string with_zeros_before_points(std::string_view bytes) {
+  std::string out;
+  std::size_t copied = 0;
+  bool numbers = false,
+       goes_on = false;  // of a vertex, a place on a texture or a normal; from the line before
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    std::string_view line = bytes.substr(at, end - at);
+    const std::size_t first = std::min(line.find_first_not_of(" \t"), line.size());
+    if (!goes_on) numbers = line.substr(first).starts_with('v');
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    goes_on = line.ends_with('\\');
+    for (std::size_t point = 0; numbers && (point = line.find('.', point)) != std::string_view::npos; ++point)
+      if ((point == 0 || line[point - 1] == ' ' || line[point - 1] == '\t') && point + 1 < line.size() &&
+          line[point + 1] >= '0' && line[point + 1] <= '9') {
+        out += bytes.substr(copied, at + point - copied);
+        out += '0';
+        copied = at + point;
+      }
+    at = end + 1;
+  }
+  if (copied > 0) out += bytes.substr(copied);
+  return out;
+}
+
 /// What the library says of a failure, without the line ends and full stops that it adds.
 std::string words_of(std::string text) {
   text = one_line(std::move(text));
@@ -372,6 +399,7 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
       return bad_value(fmt::format("'{}' {}", path, wrong));
     note_up_axis(extension, bytes, report);
     if (begins_like_a_line_end(extension, bytes)) in_memory = with_a_first_byte(bytes);
+    if (extension == ".obj") in_memory = with_zeros_before_points(bytes);
     if (extension == ".gltf" || extension == ".glb") faces = faces_of_gltf(bytes);
   }
   try {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -7,9 +8,12 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "model/files/one_line.h"
 #include "model/import/import_checks.h"
+#include "model/import/text_numbers.h"
 
 namespace palpate {
 namespace {
@@ -152,14 +156,40 @@ std::string distrust_binary(std::string_view body, const Header& header) {
   return {};
 }
 
-std::string distrust_ascii(std::string_view body, const Header& header) {
+/// An element's values, which the library looks for in one line. It takes the beginnings of words for
+/// numbers.
+std::string distrust_values(const Element& element, std::string_view line, std::size_t number) {
+  std::size_t plain = 0;  // numbers that stand before the next list
+  const auto take = [&](std::size_t count) { return distrust_numbers(line, count, "line", number); };
+  for (const Property& property : element.properties) {
+    if (property.count_size == 0) {
+      ++plain;
+      continue;
+    }
+    if (std::string wrong = take(std::exchange(plain, 0)); !wrong.empty()) return wrong;
+    const std::string_view word = take_word(line);
+    std::uint64_t entries = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), entries);
+    if (error != std::errc() || end != word.data() + word.size())
+      return fmt::format("has '{}' for the length of a list in line {}",
+                         one_line(std::string(word.substr(0, 40))), number);
+    if (std::string wrong = take(entries); !wrong.empty()) return wrong;
+  }
+  return take(plain);
+}
+
+/// `number`: of the body's first line.
+std::string distrust_ascii(std::string_view body, const Header& header, std::size_t number) {
   for (const Element& element : header.elements) {
     if (element.count > body.size()) return cut_short(element, 0);
-    for (std::uint64_t i = 0; i < element.count;) {
+    for (std::uint64_t i = 0; i < element.count; ++number) {
       if (body.empty()) return cut_short(element, i);
       const std::size_t end = body.find('\n');
-      if (body.substr(0, end).find_first_not_of(" \t\r") != std::string_view::npos) ++i;
+      const std::string_view line = body.substr(0, end);
       body.remove_prefix(end == std::string_view::npos ? body.size() : end + 1);
+      if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+      if (std::string wrong = distrust_values(element, line, number); !wrong.empty()) return wrong;
+      ++i;
     }
   }
   return {};
@@ -172,7 +202,11 @@ std::string distrust_ply(std::string_view bytes) {
   if (std::string wrong = read_header(bytes, header); !wrong.empty()) return wrong;
   if (std::string wrong = distrust_order(header); !wrong.empty()) return wrong;
   const std::string_view body = bytes.substr(header.length);
-  if (header.format == "ascii") return distrust_ascii(body, header);
+  if (header.format == "ascii") {
+    const std::string_view head = bytes.substr(0, header.length);
+    return distrust_ascii(body, header,
+                          static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n')) + 1);
+  }
   if (header.format == "binary_little_endian" || header.format == "binary_big_endian")
     return distrust_binary(body, header);
   return fmt::format("has PLY format '{}', which is unknown", header.format.substr(0, 40));

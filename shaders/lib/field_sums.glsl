@@ -41,6 +41,9 @@ void put_wide(uint32_t kind, i64vec3 term) {
   }
 }
 
+// (p·x) >> 10 of the whole product: a small p keeps its last bits. p ≥ 0.
+i64vec3 product_q10(int64_t p, i64vec3 x) { return (p >> 10) * x + (((p & 1023l) * x) >> 10); }
+
 // Of the bins of all poses.
 uint32_t bin_of(ivec3 n) {
   const int32_t least = 444764242;   // tan 22.5° in Q30
@@ -64,8 +67,7 @@ void put_push(Push push) {
   const int64_t p = int64_t((uint64_t(push.depth) * uint64_t(weight)) >> 14);
   put_term(0u, weight != 0u ? 1l : 0l);
   put_wide(1u, p * (n >> 10));
-  put_wide(7u,
-           (p >> 10) * (i64vec3(r.y * n.z - r.z * n.y, r.z * n.x - r.x * n.z, r.x * n.y - r.y * n.x) >> 30));
+  put_wide(7u, product_q10(p, i64vec3(r.y * n.z - r.z * n.y, r.z * n.x - r.x * n.z, r.x * n.y - r.y * n.x) >> 30));
   const int64_t steep = (n.x * u.x + n.y * u.y + n.z * u.z) >> 30;
   const int64_t give = steep > 0l ? (int64_t(weight) * steep) >> 34 : 0l;
   const i64vec3 lever = r >> scene.lever_shift, moment = give * lever;
@@ -93,7 +95,7 @@ void put_push(Push push) {
   put_term(kFieldBinWords + 1u, int64_t(push.weight));
   put_term(kFieldBinWords + 2u, whole);
   put_wide(kFieldBinWords + 3u, whole * (n >> 10));
-  put_wide(kFieldBinWords + 9u, (whole >> 10) * r);
+  put_wide(kFieldBinWords + 9u, product_q10(whole, r));
   term_slots[team()] = push.slot;
   atomicMax(carrier_work[kCarrierWords * push.slot + kWordCarrierDepth], int64_t(push.depth));
 }

@@ -65,6 +65,12 @@ def test_what_is_too_large_is_refused_before_it_is_read():
             f' {10**15}\r\n\r\n'.encode()
         )
         expect(status_of(answer) == 413, answer[:300])
+        # A client that sends all it has before it listens hears it, too.
+        answer = server.raw(
+            b'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type:'
+            b' application/json\r\nContent-Length: 64000000\r\n\r\n' + b'x' * 64_000_000
+        )
+        expect(status_of(answer) == 413 and b'too-large' in answer, answer[:300])
         chunk = b'10000\r\n' + b'x' * 65536 + b'\r\n'
         answer = server.raw(
             f'POST /v1/scenes HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nTransfer-Encoding:'

@@ -86,6 +86,29 @@ def test_a_path_is_examined_beside_a_loop_on_the_scene():
         expect(server.ask('POST', f'/v1/scenes/{paper}/path', {'poses': down}).status == 409, 'paper')
 
 
+def test_a_path_is_left_when_its_client_leaves():
+    folder, arguments = rooted()
+    down = [[0.0001 * (i % 7), 0, 0.018 - 0.0001 * (i % 11), 0, 0, 0, 1] for i in range(50_000)]
+    with Server(*arguments) as server:
+        name = named(server)
+        body = json.dumps({'poses': down}).encode()
+        with server.connect() as link:
+            link.sendall(
+                f'POST /v1/scenes/{name}/path HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json'
+                f'\r\nContent-Length: {len(body)}\r\n\r\n'.encode() + body
+            )
+            until(
+                'the path is being examined',
+                lambda: server.ask('POST', f'/v1/scenes/{name}/path', {'poses': down[:2]}).status == 503,
+            )
+        until(
+            'the log has the client that left',
+            lambda: re.search(r'"path":"/v1/scenes/[^"]*/path","status":499', server.log_text()),
+        )
+        answer = server.ask('POST', f'/v1/scenes/{name}/path', {'poses': down[:2]})
+        expect(answer.status == 200, answer)
+
+
 def test_a_scene_has_the_engine_that_it_is_opened_with():
     folder, arguments = rooted()
     rows = poses(20)

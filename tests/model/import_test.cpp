@@ -465,6 +465,64 @@ TEST_F(MeshImport, CoordinatesMustBeFinite) {
   EXPECT_THAT(refused(write("c.obj", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n")), HasSubstr("nan"));
 }
 
+// The library takes what a word begins with, or leaves out the vertex and takes the next one for it.
+TEST_F(MeshImport, EveryNumberOfATextIsWhollyOne) {
+  const auto obj = [&](const std::string& first) {
+    return write("n.obj", "v " + first + "\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nv 9 9 9\n");
+  };
+  const auto off = [&](const std::string& first) {
+    return write("n.off", "OFF\n3 1 0\n" + first + "\n1 0 0\n0 1 0\n3 0 1 2\n");
+  };
+  const auto ply = [&](const std::string& first, const std::string& face = "3 0 1 2") {
+    return write(
+        "n.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+            first + "\n1 0 0\n0 1 0\n" + face + "\n");
+  };
+  const auto stl = [&](const std::string& first) {
+    return write("n.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex " + first +
+                              "\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
+  };
+  const std::vector<std::pair<const char*, Vec3>> good = {{".5 -.25 +.125", Vec3(0.5, -0.25, 0.125)},
+                                                          {"2. +3 5E-1", Vec3(2, 3, 0.5)},
+                                                          {" 0\t.5  4e+1 ", Vec3(0, 0.5, 40)}};
+  for (const auto& [text, wanted] : good)
+    for (const auto& path : {obj(text), off(text), ply(text), stl(text)})
+      EXPECT_EQ(corners(read(path), 0)[0], wanted) << path << " " << text;
+  for (const char* bad :
+       {"0x10 0 0", "0 1,5 0", "0 0 1.5.2", "1d3 0 0", "0 0 5-3", "1e 0 0", "abc 0 0", "1_0 0 0", ". 0 0"})
+    for (const auto& path : {obj(bad), off(bad), ply(bad), stl(bad)})
+      EXPECT_THAT(refused(path), HasSubstr("for a number in ")) << path << " " << bad;
+  for (const auto& path : {off("0 0"), ply("0 0"), stl("0 0")})
+    EXPECT_THAT(refused(path), HasSubstr("has 2 of 3 numbers in ")) << path;
+  EXPECT_THAT(refused(obj("0 0")),
+              HasSubstr("has a vertex of 2 numbers in line 1; of 3, 4 or 6 it can be read"));
+  EXPECT_THAT(refused(obj("0 0 0 1 1 1 1")), HasSubstr("has a vertex of 7 numbers in line 1"));
+  EXPECT_THAT(refused(ply("0 0 0", "3. 0 1 2")), HasSubstr("has '3.' for the length of a list in line 13"));
+  EXPECT_THAT(refused(ply("0 0 0", "3 0 1")), HasSubstr("has 2 of 3 numbers in line 13"));
+  EXPECT_EQ(
+      read(
+          write("map.obj",
+                "v 0 0 0 1 .5 1\nv 1 0 0\nv \\\n0 \\\n.5 0\nvt .5 .5\nvn 0 0 .5 # .5\nf 1/1/1 2/1/1 3/1/1\n"))
+          .vertices.back(),
+      Vec3(0, 0.5, 0));
+}
+
+TEST_F(MeshImport, EveryNumberOfAColladaIsWhollyOne) {
+  const std::string good = collada("");
+  for (const char* bad : {"1.5.2", "5-3", "1,5", "0x10", "1d3"}) {
+    std::string text = good;
+    const std::size_t numbers = text.find('>', text.find("<float_array")) + 1;
+    text.replace(numbers, text.find_first_of(" <", numbers) - numbers, bad);
+    EXPECT_THAT(refused(write("a.dae", text)),
+                HasSubstr(std::string("'") + bad + "' for a number of a <float_array>"));
+  }
+  std::string turned = good;
+  turned.insert(turned.find("<instance_geometry"), "<translate>0 1.2.3 0</translate>");
+  EXPECT_THAT(refused(write("b.dae", turned)), HasSubstr("'1.2.3' for a number of a <translate>"));
+}
+
 TEST_F(MeshImport, MissingEmptyAndUnknownFilesAreRefused) {
   EXPECT_THAT(refused((folder_ / "none.stl").string()), HasSubstr("can't be opened: No such file"));
   EXPECT_THAT(refused(write("empty.stl", "")), HasSubstr("is empty"));

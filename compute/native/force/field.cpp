@@ -68,6 +68,9 @@ void add_term(WideSum& sum, std::int64_t term) {
   sum.high += term >> 32;
 }
 
+/// (p·x) >> 10 of the whole product: a small p keeps its last bits. p ≥ 0.
+std::int64_t product_q10(std::int64_t p, std::int64_t x) { return (p >> 10) * x + (((p & 1023) * x) >> 10); }
+
 void add_bin(FieldBin& bin, const FieldBin& more) {
   bin.samples += more.samples;
   bin.give += more.give;
@@ -272,7 +275,7 @@ void PressureField::add_push(const Push& push, Lane& lane) const {
   const std::int64_t turns[3] = {turn.x >> 30, turn.y >> 30, turn.z >> 30};
   for (std::size_t k = 0; k < 3; ++k) {
     add_term(bin.push[k], p * (n[static_cast<int>(k)] >> 10));
-    add_term(bin.turn[k], (p >> 10) * turns[k]);
+    add_term(bin.turn[k], product_q10(p, turns[k]));
   }
   const Int3& u = push.against;
   const std::int64_t steep = std::max<std::int64_t>(
@@ -304,7 +307,7 @@ void PressureField::add(const Push& push, std::uint32_t static_id, std::uint32_t
   carrier->depth_sum += whole;
   for (std::size_t k = 0; k < 3; ++k) {
     add_term(carrier->push[k], whole * (push.along[static_cast<int>(k)] >> 10));
-    add_term(carrier->moment[k], (whole >> 10) * push.at[static_cast<int>(k)]);
+    add_term(carrier->moment[k], product_q10(whole, push.at[static_cast<int>(k)]));
   }
 }
 

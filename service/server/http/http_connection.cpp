@@ -1,5 +1,9 @@
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <utility>
 
+#include <atomic>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
@@ -28,6 +32,8 @@ using Clock = std::chrono::steady_clock;
 using Parser = http::request_parser<http::buffer_body>;
 
 constexpr std::size_t kPiece = 64 << 10;
+constexpr auto kLingering =
+    std::chrono::seconds(3);  ///< chosen: hundreds of MB from next door, many from afar
 
 std::chrono::nanoseconds seconds(double s) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
@@ -60,6 +66,43 @@ class ReadDeadline {
   };
   std::shared_ptr<State> state_ = std::make_shared<State>();
   asio::steady_timer timer_;
+};
+
+/// Tells who works for a client that it has gone: asks the kernel now and then whether the client has closed
+/// its end. (Reading would tell, too, but what is read may be the next request, or a part of TLS.)
+class ClientWatch {
+ public:
+  explicit ClientWatch(AnyStream& stream) : state_(std::make_shared<State>(stream)) { look(state_); }
+  ~ClientWatch() {
+    state_->stream = nullptr;  // the handler may be on its way already
+    state_->timer.cancel();
+  }
+  ClientWatch(const ClientWatch&) = delete;
+  ClientWatch& operator=(const ClientWatch&) = delete;
+  /// True from then on; any thread may look.
+  std::shared_ptr<const std::atomic<bool>> gone() const { return {state_, &state_->gone}; }
+
+ private:
+  struct State {
+    explicit State(AnyStream& of) : stream(&of), timer(of.lowest().get_executor()) {}
+    AnyStream* stream;
+    asio::steady_timer timer;
+    std::atomic<bool> gone{false};
+  };
+  static void look(const std::shared_ptr<State>& state) {
+    state->timer.expires_after(seconds(0.25));  // chosen: soon for people, nothing for the processor
+    state->timer.async_wait([state](error_code error) {
+      if (error || state->stream == nullptr) return;
+      tcp_info info{};
+      socklen_t size = sizeof info;
+      const int socket = state->stream->lowest().socket().native_handle();
+      if (getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 && info.tcpi_state != TCP_ESTABLISHED)
+        state->gone = true;
+      else
+        look(state);
+    });
+  }
+  std::shared_ptr<State> state_;
 };
 
 /// One connection's conversation.
@@ -280,6 +323,8 @@ class HttpConnection {
 
   asio::awaitable<HttpResponse> answer(const Route& route, HttpRequest& request, BodySink* sink) {
     stream_.lowest().expires_never();
+    const ClientWatch watch(stream_);
+    request.client_gone = watch.gone();
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(HttpResponse)>(
         [&](auto&& done) {
           // A reply may be copied and may come on any thread; the conversation goes on on its own strand.
@@ -320,14 +365,16 @@ class HttpConnection {
     co_await send(response, false);
     // The client may still be sending; if it is not listened to for a moment, a reset may take the answer
     // from it.
-    stream_.lowest().expires_after(seconds(0.5));
     error_code error;
     error_code ignored;
     stream_.lowest().socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
     std::vector<char> waste(kPiece);
-    for (int i = 0; i < 64 && !error; ++i)
+    const Clock::time_point end = Clock::now() + kLingering;
+    while (!error && !context_.stopping && Clock::now() < end) {
+      stream_.lowest().expires_after(seconds(0.5));
       co_await stream_.lowest().async_read_some(asio::buffer(waste),
                                                 asio::redirect_error(asio::use_awaitable, error));
+    }
     co_return false;
   }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -22,6 +23,8 @@ struct HttpRequest {
   std::string repeated;                      ///< a name of the query that comes twice; empty: none
   std::string content_type, accept, range, expect;
   std::string body;  ///< empty when it went to a BodySink
+  /// True once the client has closed its end, and nobody waits for the answer.
+  std::shared_ptr<const std::atomic<bool>> client_gone = std::make_shared<std::atomic<bool>>(false);
 
   std::string query_or(const std::string& name, const std::string& otherwise) const {
     const auto found = query.find(name);

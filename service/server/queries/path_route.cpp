@@ -23,7 +23,8 @@ struct Freed {
 };
 
 HttpResponse examined(SceneStore& store, SceneLease& scene, const std::vector<Pose>& poses,
-                      const std::string& name, const std::atomic<bool>& stopping) {
+                      const std::string& name, const std::atomic<bool>& stopping,
+                      const std::atomic<bool>& client_gone) {
   const LoadedScene& loaded = scene->loaded;
   if (loaded.scene.response.profile != Profile::kRefined)
     return Problem{409, "conflict",
@@ -36,11 +37,13 @@ HttpResponse examined(SceneStore& store, SceneLease& scene, const std::vector<Po
   const auto report = check_path(loaded, backend, poses, TouchRule::of(loaded.geometry, 0), std::nullopt,
                                  [&](const char*, double) {
                                    late = std::chrono::steady_clock::now() > end;
-                                   return !late && !stopping;
+                                   return !late && !stopping && !client_gone;
                                  });
   if (late)
     return Problem{503, "busy",
                    "the path takes more than two minutes to examine; `palpate path` has no such limit", ""};
+  if (client_gone)  // for the log; nginx counts by this number, too
+    return Problem{499, "client-gone", "the client closed the connection before its path was examined", ""};
   if (!report) return problem_of(report.error());
   HttpResponse response(200, path_page(loaded, *report, "The path that was recorded", name,
                                        backend.name() + " on " + backend.device()));
@@ -70,7 +73,7 @@ void add_path_route(Router& router, SceneStore& store, WorkerPool& workers, cons
                   HttpResponse answer = [&] {
                     const Freed freed{*busy};
                     return examined(store, *std::get<SceneUse>(scene), std::get<std::vector<Pose>>(poses),
-                                    store.name(id), stopping);
+                                    store.name(id), stopping, *request.client_gone);
                   }();
                   reply(std::move(answer));
                 });
