@@ -168,6 +168,7 @@ std::string distrust_values(const Element& element, std::string_view line, std::
     }
     if (std::string wrong = take(std::exchange(plain, 0)); !wrong.empty()) return wrong;
     const std::string_view word = take_word(line);
+    if (word.empty()) return fmt::format("has no list in line {}, where its header promises one", number);
     std::uint64_t entries = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), entries);
     if (error != std::errc() || end != word.data() + word.size())

@@ -42,7 +42,7 @@ bool is_decimal(std::string_view word) {
   for (const std::string_view name : {"nan", "inf", "infinity"})
     if (is_in_any_case(word, name)) return true;
   std::size_t digits = take_digits(word);
-  if (!word.empty() && word[0] == '.') {
+  if (!word.empty() && (word[0] == '.' || word[0] == ',')) {
     word.remove_prefix(1);
     digits += take_digits(word);
   }

@@ -486,12 +486,13 @@ TEST_F(MeshImport, EveryNumberOfATextIsWhollyOne) {
   };
   const std::vector<std::pair<const char*, Vec3>> good = {{".5 -.25 +.125", Vec3(0.5, -0.25, 0.125)},
                                                           {"2. +3 5E-1", Vec3(2, 3, 0.5)},
-                                                          {" 0\t.5  4e+1 ", Vec3(0, 0.5, 40)}};
+                                                          {" 0\t.5  4e+1 ", Vec3(0, 0.5, 40)},
+                                                          {"0,5 -2,25 0", Vec3(0.5, -2.25, 0)}};
   for (const auto& [text, wanted] : good)
     for (const auto& path : {obj(text), off(text), ply(text), stl(text)})
       EXPECT_EQ(corners(read(path), 0)[0], wanted) << path << " " << text;
   for (const char* bad :
-       {"0x10 0 0", "0 1,5 0", "0 0 1.5.2", "1d3 0 0", "0 0 5-3", "1e 0 0", "abc 0 0", "1_0 0 0", ". 0 0"})
+       {"0x10 0 0", "0 1,5,2 0", "0 0 1.5.2", "1d3 0 0", "0 0 5-3", "1e 0 0", "abc 0 0", "1_0 0 0", ". 0 0"})
     for (const auto& path : {obj(bad), off(bad), ply(bad), stl(bad)})
       EXPECT_THAT(refused(path), HasSubstr("for a number in ")) << path << " " << bad;
   for (const auto& path : {off("0 0"), ply("0 0"), stl("0 0")})
@@ -511,7 +512,7 @@ TEST_F(MeshImport, EveryNumberOfATextIsWhollyOne) {
 
 TEST_F(MeshImport, EveryNumberOfAColladaIsWhollyOne) {
   const std::string good = collada("");
-  for (const char* bad : {"1.5.2", "5-3", "1,5", "0x10", "1d3"}) {
+  for (const char* bad : {"1.5.2", "5-3", "1,5,2", "0x10", "1d3"}) {
     std::string text = good;
     const std::size_t numbers = text.find('>', text.find("<float_array")) + 1;
     text.replace(numbers, text.find_first_of(" <", numbers) - numbers, bad);
