@@ -148,7 +148,8 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
   if (!geometry.tool.closed && !pose->beyond_lattice)
     out.bodies.push_back(
         (contacts.flags & kFlagToolOpen) != 0
-            ? "the tool is open and has no inside: it is pushed as a sheet is, out of the mock-up"
+            ? "the tool is open and has no inside: it is pushed as a sheet is, out of the mock-up; "
+              "\"sheet_thickness\" in the scene gives it walls"
             : "the tool is not closed: " + vote +
                   doubt(geometry.mockup, {&contacts.cst, &contacts.est}, geometry.tool, to_tool, "mock-up"));
 

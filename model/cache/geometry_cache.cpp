@@ -150,6 +150,7 @@ bool add_source(KeyBuilder& key, const MeshSource& source) {
   key.text(source.part);
   key.value(source.without.size());
   for (const std::string& name : source.without) key.text(name);
+  key.value(source.sheet_thickness_m);
   key.text(source.generate);
   key.value(source.generate_parameters.size());
   for (const auto& [name, value] : source.generate_parameters) {

@@ -23,6 +23,7 @@ struct MeshSource {
   bool scale_stated = false;                          ///< the scene says `units` or `scale`
   std::string part;                                   ///< node taken out; empty: all
   std::vector<std::string> without;                   ///< nodes left out
+  double sheet_thickness_m = 0;                       ///< walls of what is open (thicken()); 0: none
   std::string generate;                               ///< generator name, e.g. "disassembly/mockup"
   std::map<std::string, double> generate_parameters;  ///< "triangles", …
 };

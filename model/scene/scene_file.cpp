@@ -18,8 +18,11 @@ namespace palpate {
 const std::map<std::string, std::vector<std::string>>& scene_keys() {
   static const std::map<std::string, std::vector<std::string>> keys{
       {"scene", {"$schema", "description", "static", "tool", "response", "control", "device", "start"}},
-      {"static", {"mesh", "generate", "units", "scale", "part", "without", "position", "rotation"}},
-      {"tool", {"mesh", "generate", "units", "scale", "part", "without", "mass", "centre_of_mass"}},
+      {"static",
+       {"mesh", "generate", "units", "scale", "part", "without", "sheet_thickness", "position", "rotation"}},
+      {"tool",
+       {"mesh", "generate", "units", "scale", "part", "without", "sheet_thickness", "mass",
+        "centre_of_mass"}},
       {"generate", {"name", "body", "triangles"}},
       {"response",
        {"profile", "stiffness", "smooth_angle_deg", "sample_spacing", "voxel_size", "contact_samples",
@@ -115,6 +118,7 @@ void read_source(const SceneObject& body, const char* usual_body, const GivenMes
   source.scale_stated = body.has("units") || body.has("scale");
   body.text("part", source.part);
   body.texts("without", source.without);
+  body.number("sheet_thickness", {0, 1, " m"}, source.sheet_thickness_m);
 }
 
 void read_statics(const SceneObject& scene_json, const GivenMeshes& given, Scene& scene) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "model/generate.h"
 #include "model/generate/solids.h"
 #include "model/mesh/confined_import.h"
+#include "model/mesh/thicken.h"
 #include "model/scene/scene_file.h"
 
 namespace palpate {
@@ -85,6 +88,33 @@ class Files {
   std::map<Key, Mesh> kept_;
 };
 
+/// Whether every corner is a place: of a mesh in memory that can't be said. Whoever welds it tells what is
+/// wrong.
+bool all_are_places(const Mesh& mesh) {
+  const auto far = [](const Vec3& v) {
+    return !(std::fabs(v.x) < 1e9 && std::fabs(v.y) < 1e9 && std::fabs(v.z) < 1e9);
+  };
+  return std::none_of(mesh.vertices.begin(), mesh.vertices.end(), far) &&
+         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
+           return std::all_of(triangle.begin(), triangle.end(),
+                              [&](std::uint32_t v) { return v < mesh.vertices.size(); });
+         });
+}
+
+Mesh walled(const Mesh& mesh, const MeshSource& source, std::vector<std::string>& warnings) {
+  Thickened thick = thicken(mesh, source.sheet_thickness_m);
+  if (thick.walls == 0)
+    warnings.push_back(fmt::format("{}: no piece of it is open, so \"sheet_thickness\" changes nothing",
+                                   source_name(source)));
+  else
+    warnings.push_back(fmt::format(
+        "{}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} triangles{}",
+        source_name(source), thick.walls, mesh.triangles.size(), 1e3 * source.sheet_thickness_m,
+        thick.mesh.triangles.size(),
+        thick.copies == 0 ? "" : fmt::format(", without {} that were there twice", thick.copies)));
+  return std::move(thick.mesh);
+}
+
 Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation,
                      const ImportProgress& progress, std::vector<std::string>& warnings) {
   Result<Mesh> mesh =
@@ -94,6 +124,7 @@ Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation&
   if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
   if (mesh && mesh->triangles.empty())
     return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
+  if (mesh && source.sheet_thickness_m > 0 && all_are_places(*mesh)) mesh = walled(*mesh, source, warnings);
   return mesh;
 }
 

@@ -130,6 +130,48 @@ def test_a_small_contact_far_from_the_tools_middle_keeps_its_lever():
             expect(abs(a - b) <= 1e-6, (engine, area['point']))
 
 
+def test_two_sheets_push_each_other_once_they_have_walls():
+    folder = Folder()
+
+    def square(side, *shifts):
+        h = side / 2
+        at = [((-h, -h, z), (h, -h, z), (h, h, z), (-h, h, z)) for z in shifts]
+        return [t for a, b, c, d in at for t in ((a, b, c), (a, c, d))]
+
+    for name, side in (('floor', 0.2), ('plate', 0.04)):
+        folder.write(f'{name}.stl', stl(square(side, 0)))
+        folder.write(f'{name}_box.stl', stl(box((side, side, 0.002))))
+
+    def answer(mockup, tool, z, thickness=0.002):
+        body = lambda name: {
+            'mesh': name + '.stl',
+            'units': 'm',
+            **({} if name.endswith('box') else {'sheet_thickness': thickness}),
+        }
+        scene = folder.save(static=[body(mockup)], tool=body(tool), response={'voxel_size': 0.004})
+        done = palpate('query', scene, '--pose', f'0.01 0 {z} 0 0 0 1')
+        (line,) = lines_of(done)
+        return line, done.err
+
+    for z in (0.0015, -0.0015):
+        line, told = answer('floor', 'plate', z)
+        boxes, _ = answer('floor_box', 'plate_box', z)
+        expect('2 of 2 triangles lie in open pieces and are walls 2 mm thick now; it has 12' in told, told)
+        # The same boxes, but for the diagonals of their faces. Of single precision in the files of boxes, 0.002 is
+        # off by 5e-11 m: of 0.5 mm 1e-7.
+        expect(abs(boxes['force'][2]) > 0.1 and boxes['force'][2] * z > 0, boxes['force'])
+        for a, b in zip(line['force'], boxes['force'], strict=True):
+            expect(abs(a - b) <= 1e-6 * abs(boxes['force'][2]), (line['force'], boxes['force']))
+    line, told = answer('floor', 'plate', 0, thickness=0)
+    expect(
+        line['flags'] and line['force'] == [0, 0, 0] and 'walls' not in told.split('sheet_thickness')[0], line
+    )
+    line, told = answer('floor_box', 'plate_box', 0.0015)
+    folder.save(static=[{'mesh': 'floor_box.stl', 'units': 'm', 'sheet_thickness': 0.001}])
+    told = palpate('query', folder / 'scene.json', '--pose', PRESSED).err
+    expect('no piece of it is open, so "sheet_thickness" changes nothing' in told, told)
+
+
 def test_a_batch_on_all_cores_prints_what_single_queries_do():
     folder = Folder()
     scene = generated(folder)

@@ -116,6 +116,7 @@ TEST_F(GeometryCache, EverythingThatShapesGeometryIsInTheKeyAndNothingElse) {
   EXPECT_NE(geometry_key(read("", R"({"mesh": "block.off", "position": [0, 0, 1]})")), key);
   EXPECT_NE(geometry_key(read("", R"({"mesh": "block.off", "rotation": [0, 0, 1, 0]})")), key);
   EXPECT_NE(geometry_key(read("", R"({"mesh": "block.off", "units": "cm"})")), key);
+  EXPECT_NE(geometry_key(read("", R"({"mesh": "block.off", "sheet_thickness": 0.001})")), key);
   EXPECT_NE(geometry_key(read("", R"({"mesh": "block.off"}, {"mesh": "block.off"})")), key);
   EXPECT_NE(geometry_key(read("", R"({"mesh": "tool.off"})")), key);  // warnings name the file
   EXPECT_NE(geometry_key(
