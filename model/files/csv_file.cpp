@@ -45,8 +45,11 @@ std::string printed(double value) {
 
 Result<double> CsvRow::number(std::size_t column) const {
   const std::string_view cell = cells_[column];
+  std::string_view digits = cell;
+  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-')
+    digits.remove_prefix(1);  // from_chars knows none
   double value = 0;
-  const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
     return bad_value(place() + ": " + in_quotes(cell) + " is not a finite number");
   return value;

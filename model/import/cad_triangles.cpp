@@ -60,7 +60,9 @@ class Triangulator {
         return bad_value(fmt::format("'{}' {}", file_, wrong));
     }
     if (mesh_.triangles.empty())
-      return bad_value(fmt::format("'{}' has no faces of which triangles can be made", file_));
+      return bad_value(
+          fmt::format("'{}' has no faces of which triangles can be made (at most {:.3g} m from them)", file_,
+                      *deflection));
     if (flat_)
       report.notes.push_back(fmt::format("{} faces gave no triangles, the first is face {} of '{}'", flat_,
                                          first_flat_, flat_path_));

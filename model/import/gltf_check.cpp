@@ -195,6 +195,21 @@ std::string distrust_meshes(const Json& root) {
   return {};
 }
 
+/// Weights of morph targets where the file stands still: the library leaves them out.
+std::string distrust_weights(const Json& root) {
+  for (const char* key : {"meshes", "nodes"}) {
+    const Json& entries = list(root, key);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      for (const Json& weight : list(entries[i], "weights"))
+        if (!weight.is_number() || weight.get<double>() != 0)
+          return fmt::format(
+              "has weights of morph targets in entry {} of '{}', which can't be applied; save it "
+              "in the shape that it has with them",
+              i, key);
+  }
+  return {};
+}
+
 /// The JSON of a .gltf, or of a .glb's first chunk.
 std::string find_json(std::string_view bytes, std::string_view& json) {
   json = bytes;
@@ -306,6 +321,7 @@ std::string distrust_gltf(std::string_view bytes, const std::string& path) {
   std::string wrong = distrust_nodes(list(root, "nodes"));
   if (wrong.empty()) wrong = distrust_buffers(root, bytes.size(), path);
   if (wrong.empty()) wrong = distrust_meshes(root);
+  if (wrong.empty()) wrong = distrust_weights(root);
   if (wrong.empty()) wrong = distrust_extensions(list(root, "extensionsRequired"));
   return wrong;
 }

@@ -75,26 +75,47 @@ std::string distrust_stl_facets(std::string_view text) {
 
 }  // namespace
 
-std::string distrust_stl(std::string_view bytes) {
-  constexpr std::size_t kHeader = 84, kFacet = 50;
-  const std::string_view start = trimmed(bytes.substr(0, 512));
+namespace {
+
+constexpr std::size_t kStlHeader = 84, kStlFacet = 50;  // bytes
+
+std::uint32_t binary_stl_facets(std::string_view bytes) {
   std::uint32_t facets = 0;
-  if (bytes.size() >= kHeader) std::memcpy(&facets, bytes.data() + 80, 4);
-  const std::uint64_t binary_size = kHeader + kFacet * std::uint64_t{facets};
-  if (bytes.size() >= kHeader && bytes.size() == binary_size) return {};
-  if (start.substr(0, 5) == "solid" && start.find('\0') == std::string_view::npos) {
+  if (bytes.size() >= kStlHeader) std::memcpy(&facets, bytes.data() + 80, 4);
+  return facets;
+}
+
+/// As large as the binary STL that its header promises.
+bool is_binary_stl(std::string_view bytes) {
+  return bytes.size() >= kStlHeader &&
+         bytes.size() == kStlHeader + kStlFacet * std::uint64_t{binary_stl_facets(bytes)};
+}
+
+bool begins_as_text(std::string_view bytes, std::string_view word) {
+  const std::string_view start = trimmed(bytes.substr(0, 512));
+  return start.starts_with(word) && start.find('\0') == std::string_view::npos;
+}
+
+}  // namespace
+
+bool is_stl_text(std::string_view bytes) { return !is_binary_stl(bytes) && begins_as_text(bytes, "solid"); }
+
+std::string distrust_stl(std::string_view bytes) {
+  if (is_binary_stl(bytes)) return {};
+  if (is_stl_text(bytes)) {
     const std::string_view end = trimmed(bytes);
     const std::size_t last = end.find_last_of('\n');
     if (trimmed(end.substr(last == std::string_view::npos ? 0 : last)).substr(0, 8) != "endsolid")
       return "does not end with 'endsolid': it is cut short, or something follows";
     return distrust_stl_facets(bytes);
   }
-  if (start.substr(0, 5) == "SOLID" && start.find('\0') == std::string_view::npos)
-    return "is STL text in capitals; its words must be in small letters";
-  if (bytes.size() < kHeader)
-    return fmt::format("is cut short: a binary STL has at least {} bytes, it has {}", kHeader, bytes.size());
+  if (begins_as_text(bytes, "SOLID")) return "is STL text in capitals; its words must be in small letters";
+  if (bytes.size() < kStlHeader)
+    return fmt::format("is cut short: a binary STL has at least {} bytes, it has {}", kStlHeader,
+                       bytes.size());
+  const std::uint64_t facets = binary_stl_facets(bytes), wanted = kStlHeader + kStlFacet * facets;
   return fmt::format("{}: its {} facets take {} bytes, it has {}",
-                     bytes.size() < binary_size ? "is cut short" : "is not an STL file", facets, binary_size,
+                     bytes.size() < wanted ? "is cut short" : "is not an STL file", facets, wanted,
                      bytes.size());
 }
 
@@ -207,9 +228,14 @@ std::string distrust_obj(std::string_view bytes) {
     joined = bytes;
     for (std::size_t at = joined.find('\\'); at != std::string::npos; at = joined.find('\\', at + 1)) {
       const std::size_t end = joined.compare(at + 1, 2, "\r\n") == 0 ? at + 2 : at + 1;
-      if (end < joined.size() && joined[end] == '\n')
-        std::fill(joined.begin() + static_cast<std::ptrdiff_t>(at),
-                  joined.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
+      if (end >= joined.size() || joined[end] != '\n') continue;
+      const std::size_t before = joined.rfind('\n', at), begin = before == std::string::npos ? 0 : before + 1;
+      if (joined.compare(begin, 2, "o ") == 0 || joined.compare(begin, 2, "g ") == 0)
+        return fmt::format(
+            "has a name in line {} that ends in a backslash, with which the next line belongs to it",
+            1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+      std::fill(joined.begin() + static_cast<std::ptrdiff_t>(at),
+                joined.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
     }
     bytes = joined;
   }
@@ -231,6 +257,8 @@ std::string distrust_obj(std::string_view bytes) {
           if (std::string wrong = distrust_obj_numbers(line, *list, number); !wrong.empty()) return wrong;
       }
       if (line.size() < 2 || !blank(line[1])) continue;
+      if (line[0] == 'V' || line[0] == 'F')
+        return fmt::format("has '{}' in line {}; OBJ's words are in small letters", line[0], number);
       if (count && line[0] == 'o' && trimmed(line.substr(1)) != object) {
         object = trimmed(line.substr(1));
         if (const auto [at, first] = objects.emplace(object, number); !first)

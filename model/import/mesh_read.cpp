@@ -1,6 +1,7 @@
 #include "model/import/mesh_read.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
@@ -27,23 +28,31 @@
 namespace palpate {
 namespace {
 
-/// Opens files below a folder, all symbolic links followed, and no others.
-class FilesBelow final : public Assimp::DefaultIOSystem {
+/// What the library reads: `text` for the file at `path`, where there is one; the others as they are, but
+/// where a folder is given only those below it, all symbolic links followed.
+class Files final : public Assimp::DefaultIOSystem {
  public:
-  explicit FilesBelow(const std::string& folder) : folder_(folder) {}
-  bool Exists(const char* path) const override { return below(path) && DefaultIOSystem::Exists(path); }
+  /// `text` outlives this.
+  Files(std::string folder, std::string path, std::string_view text)
+      : folder_(std::move(folder)), path_(std::move(path)), text_(text) {}
+  bool Exists(const char* path) const override { return allowed(path) && DefaultIOSystem::Exists(path); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
-    return below(path) ? DefaultIOSystem::Open(path, mode) : nullptr;
+    if (!allowed(path)) return nullptr;
+    if (text_.empty() || path != path_) return DefaultIOSystem::Open(path, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
   }
 
  private:
-  bool below(const char* path) const {
+  bool allowed(const char* path) const {
+    if (folder_.empty()) return true;
     std::error_code error;
     const std::filesystem::path real = std::filesystem::canonical(path, error);
     return !error &&
            std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first == folder_.end();
   }
   std::filesystem::path folder_;
+  std::string path_;
+  std::string_view text_;
 };
 
 /// Row-major affine transform in double: assimp's are float, their products need not be.
@@ -77,11 +86,14 @@ struct Transform {
   }
 };
 
+constexpr char kBlankOfName = '\x1F';  ///< in a name, for a blank
+
 /// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>",
 /// "<OFFRoot>", "nodes[3]", …).
 std::string given_name(const aiString& text) {
   std::string name(text.data, text.length);
   const bool invented = (name.starts_with("nodes[") || name.starts_with("meshes[")) && name.ends_with(']');
+  std::replace(name.begin(), name.end(), kBlankOfName, ' ');
   if (invented || (name.size() > 1 && name.front() == '<' && name.back() == '>')) name.clear();
   return clean_name(std::move(name));
 }
@@ -349,31 +361,89 @@ std::string with_a_first_byte(std::string_view bytes) {
   return out;
 }
 
-/// An OBJ with 0.5 for .5 where a number begins with its point, for there the library ends a line of numbers;
-/// empty where none does.
-std::string with_zeros_before_points(std::string_view bytes) {
-  std::string out;
-  std::size_t copied = 0;
+/// A copy of a text with changes, made as soon as there is one.
+class Changed {
+ public:
+  explicit Changed(std::string_view text) : text_(text) {}
+  /// In place of what stands from `at` on, `size` bytes of it. Places ascend.
+  void put(std::size_t at, std::size_t size, std::string_view other) {
+    out_ += text_.substr(copied_, at - copied_);
+    out_ += other;
+    copied_ = at + size;
+  }
+  /// The whole; empty: nothing was changed.
+  std::string finish() {
+    if (copied_ > 0 || !out_.empty()) put(text_.size(), 0, "");
+    return std::move(out_);
+  }
+
+ private:
+  std::string_view text_;
+  std::string out_;
+  std::size_t copied_ = 0;
+};
+
+constexpr std::string_view kBlanks = " \t";
+constexpr std::string_view kMark = "\xEF\xBB\xBF";  ///< that a text is UTF-8
+
+/// An OBJ as the library reads it rightly. It passes over lines that begin with blanks, and over the mark in
+/// front of the first; a number that begins with its point ends a line of numbers; and a comment that ends in
+/// a backslash takes the next line with it. Lines keep their numbers. Empty: nothing needs a change.
+std::string obj_for_the_library(std::string_view bytes) {
+  Changed out(bytes);
+  std::size_t at = bytes.starts_with(kMark) ? kMark.size() : 0;
+  if (at > 0) out.put(0, at, "");
   bool numbers = false,
        goes_on = false;  // of a vertex, a place on a texture or a normal; from the line before
-  for (std::size_t at = 0; at < bytes.size();) {
+  while (at < bytes.size()) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
     std::string_view line = bytes.substr(at, end - at);
-    const std::size_t first = std::min(line.find_first_not_of(" \t"), line.size());
-    if (!goes_on) numbers = line.substr(first).starts_with('v');
     if (line.ends_with('\r')) line.remove_suffix(1);
+    if (!goes_on) {
+      if (const std::size_t first = std::min(line.find_first_not_of(kBlanks), line.size()); first > 0) {
+        out.put(at, first, "");
+        line.remove_prefix(first);
+        at += first;
+      }
+      numbers = line.starts_with('v');
+    }
+    const std::size_t comment =
+        numbers || line.starts_with('f') || line.starts_with('#') ? line.find('#') : std::string_view::npos;
+    if (line.ends_with('\\') && comment != std::string_view::npos) {
+      line = line.substr(0, comment);
+      out.put(at + comment, end - at - comment, "");
+    }
     goes_on = line.ends_with('\\');
     for (std::size_t point = 0; numbers && (point = line.find('.', point)) != std::string_view::npos; ++point)
-      if ((point == 0 || line[point - 1] == ' ' || line[point - 1] == '\t') && point + 1 < line.size() &&
-          line[point + 1] >= '0' && line[point + 1] <= '9') {
-        out += bytes.substr(copied, at + point - copied);
-        out += '0';
-        copied = at + point;
-      }
+      if ((point == 0 || kBlanks.find(line[point - 1]) != std::string_view::npos) &&
+          point + 1 < line.size() && line[point + 1] >= '0' && line[point + 1] <= '9')
+        out.put(at + point, 0, "0");
     at = end + 1;
   }
-  if (copied > 0) out += bytes.substr(copied);
-  return out;
+  return out.finish();
+}
+
+/// STL text of which the names of solids reach the library whole: it ends them at the first blank.
+std::string stl_for_the_library(std::string_view bytes) {
+  const bool marked = bytes.starts_with(kMark);
+  if (!is_stl_text(bytes.substr(marked ? kMark.size() : 0))) return {};
+  Changed out(bytes);
+  if (marked) out.put(0, kMark.size(), "");
+  for (std::size_t at = marked ? kMark.size() : 0; at < bytes.size();) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    const std::string_view line = bytes.substr(at, end - at);
+    constexpr std::string_view kSolid = "solid";
+    if (const std::size_t word = line.find_first_not_of(kBlanks);
+        word != std::string_view::npos && line.substr(word).starts_with(kSolid)) {
+      const std::size_t from = line.find_first_not_of(kBlanks, word + kSolid.size()),
+                        last = line.find_last_not_of(" \t\r");
+      for (std::size_t i = from; i < last && from != std::string_view::npos; ++i)
+        if (kBlanks.find(line[i]) != std::string_view::npos)
+          out.put(at + i, 1, std::string_view(&kBlankOfName, 1));
+    }
+    at = end + 1;
+  }
+  return out.finish();
 }
 
 /// What the library says of a failure, without the line ends and full stops that it adds.
@@ -394,28 +464,27 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
   {
     const Result<FileView> file = FileView::open(path);
     if (!file) return file.error();
-    const std::string_view bytes = file->bytes();
+    if (extension == ".obj") in_memory = obj_for_the_library(file->bytes());
+    if (extension == ".stl") in_memory = stl_for_the_library(file->bytes());
+    const std::string_view bytes = in_memory.empty() ? file->bytes() : std::string_view(in_memory);
     if (const std::string wrong = distrust(extension, bytes, path); !wrong.empty())
       return bad_value(fmt::format("'{}' {}", path, wrong));
     note_up_axis(extension, bytes, report);
-    if (begins_like_a_line_end(extension, bytes)) in_memory = with_a_first_byte(bytes);
-    if (extension == ".obj") in_memory = with_zeros_before_points(bytes);
+    if (begins_like_a_line_end(extension, bytes)) in_memory = with_a_first_byte(file->bytes());
     if (extension == ".gltf" || extension == ".glb") faces = faces_of_gltf(bytes);
   }
   try {
     if (extension == ".3mf") return read_3mf(path, scale, report);
     // No post-processing: joining vertices, triangulating or sorting by type would renumber or reorder faces.
     Assimp::Importer importer;
-    if (!folder.empty()) importer.SetIOHandler(new FilesBelow(folder));  // the importer's own from here on
+    importer.SetIOHandler(new Files(folder, path, in_memory));  // the importer's own from here on
     if (!importer.IsExtensionSupported(extension))
       return bad_value(fmt::format("'{}' is of a kind that can't be read (extension '{}')", path, extension));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(
         AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
         true);  // else a file of cameras and lamps alone has triangles, which the library makes up
-    const aiScene* scene = in_memory.empty() ? importer.ReadFile(path, 0)
-                                             : importer.ReadFileFromMemory(in_memory.data(), in_memory.size(),
-                                                                           0, extension.c_str() + 1);
+    const aiScene* scene = importer.ReadFile(path, 0);
     if (!scene || !scene->mRootNode)
       return bad_value(fmt::format("'{}' can't be read: {}", path, words_of(importer.GetErrorString())));
     if (extension == ".dae") note_unit(*scene, report);

@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+constexpr std::size_t kMostDigits = 19;  ///< in front of the point: more don't fit the importer's integers
 constexpr std::string_view kBetweenWords = " \t\r\n\v\f";
 
 /// Takes the digits off a word; how many.
@@ -42,6 +43,7 @@ bool is_decimal(std::string_view word) {
   for (const std::string_view name : {"nan", "inf", "infinity"})
     if (is_in_any_case(word, name)) return true;
   std::size_t digits = take_digits(word);
+  if (digits > kMostDigits) return false;
   if (!word.empty() && (word[0] == '.' || word[0] == ',')) {
     word.remove_prefix(1);
     digits += take_digits(word);

@@ -53,6 +53,17 @@ class PointIndex {
   std::vector<std::uint32_t> slots_;  ///< a power of two of them, at most half full
 };
 
+/// Of a mesh far from its origin: that single precision, in which most files are read, leaves nothing of it.
+std::string where_digits_end(const Mesh& mesh) {
+  double farthest = 0;
+  for (const Vec3& v : mesh.vertices)
+    farthest = std::fmax(farthest, std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))));
+  constexpr double kFar = 1e4;  // m: single precision has steps of a millimetre there
+  if (farthest < kFar) return {};
+  return fmt::format("; they lie {:.3g} m from their origin, where single precision has steps of {:.2g} m",
+                     farthest, std::ldexp(farthest, -23));
+}
+
 }  // namespace
 
 Result<LatticeMesh> snap_and_weld(const Mesh& mesh, const Lattice& lattice) {
@@ -100,8 +111,8 @@ Result<LatticeMesh> snap_and_weld(const Mesh& mesh, const Lattice& lattice) {
   if (!any)
     return bad_value(mesh.triangles.empty()
                          ? std::string("the mesh has no triangles")
-                         : fmt::format("all {} triangles collapse on the lattice (step {} m)",
-                                       mesh.triangles.size(), lattice.step_m));
+                         : fmt::format("all {} triangles collapse on the lattice (step {} m){}",
+                                       mesh.triangles.size(), lattice.step_m, where_digits_end(mesh)));
   return out;
 }
 

@@ -45,12 +45,12 @@ struct Tried {
   bool defaults = false;                         ///< the scene's own
   double d_p50 = 0, d_p99 = 0;                   ///< m
   Tail force, unseen;                            ///< at the poses that decide, and at those that only check
-  std::vector<double> p95s;                      ///< µs, one a measurement
-  double us_p50 = 0;                             ///< of the first
+  std::vector<double> p50s, p95s;                ///< µs, one a measurement
   std::vector<double> unseen_errors, unseen_us;  ///< by pose, N and µs; the times of the last measurement
   std::uint64_t memory_bytes = 0;
 
-  /// The middle one of the measurements.
+  /// The middle ones of the measurements.
+  double us_p50() const { return percentile(p50s, 0.5); }
   double us_p95() const { return percentile(p95s, 0.5); }
 };
 
@@ -94,8 +94,8 @@ class Tune {
     if (!converged) return converged.error();
     truths_ = converged->answers;
     if (std::none_of(truths_.begin(), truths_.end(), [](const auto& truth) { return truth.has_value(); }))
-      return bad_value(fmt::format("{}: none of the {} poses is in contact", options_.bench.scenes.front(),
-                                   truths_.size()));
+      return bad_value(fmt::format("{}: none of the {} poses has a contact that pushes",
+                                   options_.bench.scenes.front(), truths_.size()));
     // Every second pose in contact decides; the others tell whether that holds where nobody looked.
     seen_ = unseen_ = truths_;
     bool decides = true;
@@ -168,8 +168,10 @@ class Tune {
       if (truths[i]) times.push_back(answered.times_us[i]);
     return times;
   }
-  static double p95(const Answered& answered, const Truths& truths) {
-    return percentile(times_of(answered, truths), 0.95);
+  static void add_times(const Answered& answered, const Truths& truths, Tried& to) {
+    const std::vector<double> times = times_of(answered, truths);
+    to.p50s.push_back(percentile(times, 0.5));
+    to.p95s.push_back(percentile(times, 0.95));
   }
 
   Result<void> measure(const ErrorSetting& s, bool defaults = false) {
@@ -193,7 +195,7 @@ class Tune {
     t.d_p50 = percentile(result.errors[0], 0.5), t.d_p99 = percentile(result.errors[0], 0.99);
     t.unseen_errors = judge(*answered, unseen_).errors[3];
     t.force = tail_of(result.errors[3]), t.unseen = tail_of(t.unseen_errors);
-    t.us_p50 = percentile(result.times_us, 0.5), t.p95s = {p95(*answered, seen_)};
+    add_times(*answered, seen_, t);
     t.unseen_us = times_of(*answered, unseen_);
     t.memory_bytes = backend_->memory_bytes();
     tried_.push_back(std::move(t));
@@ -233,7 +235,7 @@ class Tune {
         if (auto used = use(candidate->backend); !used) return used;
       const auto again = answers(scene_.subject, candidate->setting);
       if (!again) return again.error();
-      candidate->p95s.push_back(p95(*again, seen_));
+      add_times(*again, seen_, *candidate);
       candidate->unseen_us = times_of(*again, unseen_);
     }
   }
@@ -326,7 +328,7 @@ class Tune {
              {{"p50", t.force.p50}, {"p95", t.force.p95}, {"p99", t.force.p99}, {"max", t.force.max}}},
             {"unseen_error_F_N",
              {{"p50", t.unseen.p50}, {"p95", t.unseen.p95}, {"p99", t.unseen.p99}, {"max", t.unseen.max}}},
-            {"time_us", {{"p50", t.us_p50}, {"p95", t.us_p95()}}},
+            {"time_us", {{"p50", t.us_p50()}, {"p95", t.us_p95()}}},
             {"unseen_time_us", {{"p95", percentile(t.unseen_us, 0.95)}}},
             {"memory_bytes", t.memory_bytes}};
   }
@@ -363,7 +365,7 @@ class Tune {
           "{:<8} {:<4} {:>10.4g} {:>10.4g} {:>6}  {:>9.3g} {:>9.3g} {:>9.3g}  {:>9.1f} {:>9.1f}  {:>9}{}{}\n",
           t.setting.profile == Profile::kPaper ? "paper" : "refined", t.backend,
           1000 * *t.setting.geometry.voxel_size_m, 1000 * *t.setting.geometry.sample_spacing_m,
-          bound_text(t.setting), t.force.p50, t.force.p95, t.force.p99, t.us_p50, t.us_p95(),
+          bound_text(t.setting), t.force.p50, t.force.p95, t.force.p99, t.us_p50(), t.us_p95(),
           bytes_text(t.memory_bytes), t.defaults ? "  the scene's own" : "",
           &t == &chosen ? "  <- chosen" : "");
     fmt::print("\nThe most accurate within {:g} µs for 95 % of the frames, by the {}, on {}:\n",

@@ -184,7 +184,7 @@ def test_a_scene_is_judged_against_a_converged_run():
     refused = palpate(
         'bench', 'error', scene, '--poses', far, '--scenes-only', '--rounds', '1', '--out', folder / 'none'
     )
-    expect(refused.code == 3 and 'none of the 1 poses is in contact' in refused.err, refused)
+    expect(refused.code == 3 and 'none of the 1 poses has a contact that pushes' in refused.err, refused)
 
 
 main(globals())

@@ -49,6 +49,41 @@ def files(folder):
     }
 
 
+def test_each_is_spoken_to_in_the_http_it_speaks():
+    folder = rooted()
+    with Server('--root', folder.path) as server:
+        name = server.ready(server.ask('POST', '/v1/scenes', {'path': 'scene.json'}))
+        body = json.dumps({'poses': [PRESSED] * 3000}).encode()
+
+        def ask(version, more=b'', method=b'POST'):
+            return server.raw(
+                method
+                + f' /v1/scenes/{name}/query HTTP/{version}\r\nHost: localhost\r\nConnection: close\r\n'
+                f'Content-Type: application/json\r\nContent-Length: {len(body)}\r\n'.encode()
+                + more
+                + b'\r\n'
+                + body
+            )
+
+        head, lines = ask('1.0').split(b'\r\n\r\n', 1)
+        expect(status_of(head) == 200 and b'Transfer-Encoding' not in head, head)
+        expect([json.loads(line)['number'] for line in lines.splitlines()] == list(range(3000)), lines[:200])
+        head, chunks = ask('1.1').split(b'\r\n\r\n', 1)
+        expect(b'Transfer-Encoding: chunked' in head and int(chunks.split(b'\r\n')[0], 16) > 0, head)
+        head, told = ask('1.1', b'Content-Encoding: gzip\r\n').split(b'\r\n\r\n', 1)
+        expect(status_of(head) == 415 and b'Content-Encoding' in told, (head, told))
+        expect(status_of(ask('1.1', b'Content-Encoding: identity\r\n')) == 200, 'identity')
+        answer = server.raw(
+            f'POST /v1/scenes/{name}/query HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n'
+            'Transfer-Encoding: gzip, chunked\r\n\r\n0\r\n\r\n'.encode()
+        )
+        expect(status_of(answer) == 501 and b'Transfer-Encoding' in answer, answer)
+        head, rest = server.raw(b'HEAD /v1/info?x=1 HTTP/1.1\r\nHost: localhost\r\n\r\n').split(
+            b'\r\n\r\n', 1
+        )
+        expect(status_of(head) == 400 and rest == b'', (head, rest))
+
+
 def test_what_is_too_large_is_refused_before_it_is_read():
     folder = rooted()
     with Server(
@@ -549,13 +584,16 @@ def test_hosts_origins_and_tokens():
             (f'Authorization: Bearer {TOKEN}\r\nOrigin: http://evil.example\r\n', 403),
             (f'Authorization: Bearer {TOKEN}\r\n', 101),
             (f'Sec-WebSocket-Protocol: palpate, palpate.token.{TOKEN}\r\n', 101),
+            (f'Sec-WebSocket-Protocol: notpalpate, palpate.token.{TOKEN}\r\n', 101),
         ):
             with WebSocket(server, f'/v1/scenes/{name}/haptic', headers) as loop:
                 expect(loop.status == status, (headers, loop.head))
+                # Chosen is what was offered, or nothing.
+                offered = ': palpate,' in headers
+                chosen = 'Sec-WebSocket-Protocol: palpate\r\n' in loop.head + '\r\n'
                 expect(
                     status != 101
-                    or 'Protocol' not in headers
-                    or 'Sec-WebSocket-Protocol: palpate\r\n' in loop.head + '\r\n',
+                    or (chosen == offered and ('Sec-WebSocket-Protocol' in loop.head) == chosen),
                     loop.head,
                 )
         expect(TOKEN not in server.log_text(), 'the token is in the log')

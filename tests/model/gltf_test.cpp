@@ -50,6 +50,25 @@ TEST_F(MeshImport, GltfHierarchyAndInstancesAreFlattenedDepthFirst) {
   EXPECT_THAT(without_parts(mesh, {"engine"}, "a.gltf").error().sentence, HasSubstr("nothing is left"));
 }
 
+TEST_F(MeshImport, GltfWithWeightsOfMorphTargetsIsRefused) {
+  std::string buffer;
+  for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);
+  write("t.bin", buffer);
+  const auto with = [&](const std::string& of_mesh, const std::string& of_node) {
+    std::string text = gltf(R"([{"name":"a","mesh":0)" + of_node + "}]");
+    const std::string primitives = R"({"primitives":[{"attributes":{"POSITION":0})";
+    text.replace(text.find(primitives), primitives.size(),
+                 "{" + of_mesh + primitives.substr(1) + R"(,"targets":[{"POSITION":0}])");
+    return write("m.gltf", text);
+  };
+  EXPECT_EQ(read(with("", "")).triangles.size(), 1u);
+  EXPECT_EQ(read(with(R"("weights":[0.0],)", R"(,"weights":[0])")).triangles.size(), 1u);
+  EXPECT_THAT(refused(with(R"("weights":[0, 0.5],)", "")),
+              HasSubstr("weights of morph targets in entry 0 of 'meshes'"));
+  EXPECT_THAT(refused(with("", R"(,"weights":[1])")),
+              HasSubstr("weights of morph targets in entry 0 of 'nodes'"));
+}
+
 TEST_F(MeshImport, GltfMeshNamesAddressPartsToo) {
   std::string buffer;
   for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(buffer, f);

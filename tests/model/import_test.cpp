@@ -491,8 +491,8 @@ TEST_F(MeshImport, EveryNumberOfATextIsWhollyOne) {
   for (const auto& [text, wanted] : good)
     for (const auto& path : {obj(text), off(text), ply(text), stl(text)})
       EXPECT_EQ(corners(read(path), 0)[0], wanted) << path << " " << text;
-  for (const char* bad :
-       {"0x10 0 0", "0 1,5,2 0", "0 0 1.5.2", "1d3 0 0", "0 0 5-3", "1e 0 0", "abc 0 0", "1_0 0 0", ". 0 0"})
+  for (const char* bad : {"0x10 0 0", "0 1,5,2 0", "0 0 1.5.2", "1d3 0 0", "0 0 5-3", "1e 0 0", "abc 0 0",
+                          "1_0 0 0", ". 0 0", "30000000000000000000000000000000000000000e-40 0 0"})
     for (const auto& path : {obj(bad), off(bad), ply(bad), stl(bad)})
       EXPECT_THAT(refused(path), HasSubstr("for a number in ")) << path << " " << bad;
   for (const auto& path : {off("0 0"), ply("0 0"), stl("0 0")})
@@ -508,6 +508,55 @@ TEST_F(MeshImport, EveryNumberOfATextIsWhollyOne) {
                 "v 0 0 0 1 .5 1\nv 1 0 0\nv \\\n0 \\\n.5 0\nvt .5 .5\nvn 0 0 .5 # .5\nf 1/1/1 2/1/1 3/1/1\n"))
           .vertices.back(),
       Vec3(0, 0.5, 0));
+}
+
+// assimp passes over lines that begin with blanks, and takes the next one with a comment that ends in a
+// backslash.
+TEST_F(MeshImport, LinesOfAnObjCountHoweverTheyBeginAndEnd) {
+  const std::string plain =
+      "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nv 9 9 9\n";
+  const Mesh wanted = read(write("plain.obj", plain));
+  const std::vector<std::pair<std::string, std::string>> changes = {
+      {"v 0 2 0", " v 0 2 0"},
+      {"v 0 2 0", "\t \tv .0 2 0"},
+      {"v 0 0 0", "\xEF\xBB\xBFv 0 0 0"},
+      {"v 0 0 0", "\xEF\xBB\xBF# text\n  v 0 0 0"},
+      {"f 1 2 4", "  f 1 2 4"},
+      {"v 1 0 0", "# from C:\\models\\\nv 1 0 0"},
+      {"v 1 0 0", "v 1 0 0 # C:\\"},
+      {"f 1 2 4", "f 1 2 4# \\\r"},
+      {"f 1 2 4", "f 1 \\\n  2 4"},
+      {"v 1 0 0\n", "v 1 0 0\r\n \r\n"}};
+  for (const auto& [from, to] : changes) {
+    std::string text = plain;
+    text.replace(text.find(from), from.size(), to);
+    const Mesh mesh = read(write("a.obj", text));
+    ASSERT_EQ(mesh.triangles.size(), 4u) << text;
+    for (std::size_t t = 0; t < 4; ++t) EXPECT_EQ(corners(mesh, t), corners(wanted, t)) << text;
+    ASSERT_EQ(mesh.parts.size(), 1u);
+    EXPECT_EQ(mesh.parts[0].path, "a.obj/defaultobject");
+  }
+  EXPECT_THAT(refused(write("u.obj", plain + "F 1 2 3\n")),
+              HasSubstr("has 'F' in line 10; OBJ's words are in small"));
+  EXPECT_THAT(refused(write("n.obj", "g a\\\n" + plain)),
+              HasSubstr("has a name in line 1 that ends in a backslash"));
+}
+
+TEST_F(MeshImport, NamesOfStlSolidsAreWhole) {
+  const auto solid = [](const std::string& name) {
+    return "solid " + name +
+           "\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+           "0\nendloop\nendfacet\nendsolid " +
+           name + "\n";
+  };
+  for (const char* mark : {"", "\xEF\xBB\xBF"}) {
+    const Mesh mesh = read(write("n.stl", mark + solid("Left Bracket") + solid("Left  Arm ") + solid("one")));
+    ASSERT_EQ(mesh.parts.size(), 3u);
+    EXPECT_EQ(mesh.parts[0].path, "n/Left Bracket");
+    EXPECT_EQ(mesh.parts[1].path, "n/Left  Arm");
+    EXPECT_EQ(mesh.parts[2].path, "n/one");
+    EXPECT_EQ(take_part(mesh, "Left Bracket", "n.stl")->triangles.size(), 1u);
+  }
 }
 
 TEST_F(MeshImport, EveryNumberOfAColladaIsWhollyOne) {

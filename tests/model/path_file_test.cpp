@@ -33,6 +33,8 @@ TEST(PathFile, ABadLineIsNamedWithItsValueAndWhatIsAllowed) {
             "p.csv, line 1 is \"t,x\"; it must be \"" + kFree.substr(0, kFree.size() - 1) + "\"");
   EXPECT_EQ(path_fault(kFree), "p.csv has no point");
   EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1\n"), "p.csv, line 2 has 8 values; the header has 9");
+  EXPECT_EQ(path_fault(kFree + "+0,+0.5,0,0,0,0,0,+1,1\n"), "");
+  EXPECT_EQ(path_fault(kFree + "0,+-1,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"+-1\" is not a finite number");
   EXPECT_EQ(path_fault(kFree + "0,nan,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"nan\" is not a finite number");
   EXPECT_EQ(path_fault(kFree + "0,1 m,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"1 m\" is not a finite number");
   EXPECT_EQ(path_fault(kFree + "0,,0,0,0,0,0,1,1\n"), "p.csv, line 2: \"\" is not a finite number");

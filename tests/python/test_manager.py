@@ -33,6 +33,8 @@ def test_distance_and_the_nearest(manager):
     distance, name = manager.min_distance_single(CUBE, shift(x=0.01), return_name=True)
     assert name == 'right' and abs(distance - 0.02) < 1e-6
     assert manager.min_distance_single(CUBE, shift(x=0.05)) == 0
+    assert manager.min_distance_single(CUBE, shift(x=0.05), return_name=True) == (0, 'right')
+    assert manager.min_distance_single(CUBE, shift(x=100), return_name=True) == (float('inf'), None)
 
 
 def test_a_group_against_a_group(manager):
@@ -43,6 +45,20 @@ def test_a_group_against_a_group(manager):
     other.set_transform('a', shift(x=0.08))
     assert not manager.in_collision_other(other)
     assert abs(manager.min_distance_other(other) - 0.01) < 1e-6
+
+
+def test_arrays_belong_to_their_maker_again():
+    vertices, faces = box([0.01, 0.01, 0.01])
+    vertices, faces = np.array(vertices, float), np.array(faces, np.uint32)
+    made = palpate.CollisionManager(engine='cpu')
+    made.add_object('here', (vertices, faces))
+    vertices += [0.1, 0, 0]
+    made.add_object('there', (vertices, faces))
+    vertices += [0.1, 0, 0]
+    faces[:] = 0
+    small = box([0.002, 0.002, 0.002])
+    assert made.in_collision_single(small, return_names=True) == (True, {'here'})
+    assert made.in_collision_single(small, shift(x=0.1), return_names=True) == (True, {'there'})
 
 
 def test_moved_and_removed_objects_count_as_they_are():

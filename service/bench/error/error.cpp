@@ -358,7 +358,7 @@ class ErrorBench {
       if (paper_truth) set.paper_truths = part_of(*paper_truth, set.first, set.count).answers;
       const std::size_t in_contact = contacts_of(set.truths);
       if (in_contact == 0) {
-        facts_.more.emplace_back("left out of " + set.name, "none of its poses is in contact");
+        facts_.more.emplace_back("left out of " + set.name, "none of its poses has a contact that pushes");
         continue;
       }
       const std::string about = fmt::format(
@@ -371,7 +371,8 @@ class ErrorBench {
       set.about = truths_of(set, about, voxel / 16);
       touched.push_back(std::move(set));
     }
-    if (touched.empty()) return bad_value(fmt::format("{}: none of its poses is in contact", subject.name));
+    if (touched.empty())
+      return bad_value(fmt::format("{}: none of its poses has a contact that pushes", subject.name));
 
     std::vector<ErrorSetting> settings, paper;
     for (const double part : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0})
@@ -413,8 +414,8 @@ class ErrorBench {
       kept.insert(kept.end(), touching.begin(), touching.end());
     }
     if (kept.empty())
-      return bad_value(
-          fmt::format("{}: none of the {} poses is in contact", subject.name, subject.poses.size()));
+      return bad_value(fmt::format("{}: none of the {} poses has a contact that pushes", subject.name,
+                                   subject.poses.size()));
     subject.poses = std::move(kept);
     return {};
   }

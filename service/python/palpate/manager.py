@@ -73,14 +73,15 @@ class CollisionManager:
         return_data: bool = False,
     ) -> Any:
         """The smallest distance (m) of a mesh at a matrix, 0 where it touches; with the name of the nearest,
-        or None, and the Distances."""
-        scene = self._scene(_arrays(mesh))
-        found = scene.clearance(_pose(transform))
-        nearest = (
-            None
-            if found.static_id == NO_TRIANGLE
-            else self._name_of(scene.part_of('static', int(found.static_id)))
-        )
+        or of one that it touches, and the Distances. inf and None where it is farther away than the scene
+        reaches, about as far as the meshes of the world and it are large (Scene.clearance)."""
+        scene, pose = self._scene(_arrays(mesh)), _pose(transform)
+        found = scene.clearance(pose)
+        nearest = None
+        if found.static_id != NO_TRIANGLE:
+            nearest = self._name_of(scene.part_of('static', int(found.static_id)))
+        elif return_name and found.distance == 0:
+            nearest = min((self._name_of(part) for part in scene.query(pose).static_parts), default=None)
         return (
             tuple([float(found.distance)] + [nearest] * return_name + [found] * return_data)
             if return_name or return_data
@@ -100,7 +101,8 @@ class CollisionManager:
         return bool(pairs), pairs
 
     def min_distance_other(self, other: 'CollisionManager') -> float:
-        """The smallest distance (m) between anything here and anything of another manager."""
+        """The smallest distance (m) between anything here and anything of another manager; inf as of
+        min_distance_single()."""
         return float(self.min_distance_single(other._joined()))
 
     def _named(self, name: str) -> Any:

@@ -409,7 +409,8 @@ def _mesh(mesh: MeshLike) -> Optional[tuple[NDArray[np.float64], NDArray[np.uint
     vertices, faces = (
         (mesh.vertices, mesh.faces) if hasattr(mesh, 'vertices') and hasattr(mesh, 'faces') else mesh
     )
-    corners, indices = np.ascontiguousarray(vertices, np.float64), np.asarray(faces)
+    # Copies: who hands them over may go on with them.
+    corners, indices = np.array(vertices, np.float64, order='C'), np.asarray(faces)
     if corners.ndim != 2 or corners.shape[1] != 3:
         raise PalpateError(3, f'the vertices of a mesh have the shape {corners.shape}; (V, 3) is wanted')
     if indices.ndim != 2 or indices.shape[1] != 3 or not np.issubdtype(indices.dtype, np.integer):
@@ -428,7 +429,7 @@ def _mesh(mesh: MeshLike) -> Optional[tuple[NDArray[np.float64], NDArray[np.uint
                 f'there are {len(corners)} vertices'
             ),
         )
-    return corners, np.ascontiguousarray(indices, np.uint32)
+    return corners, np.array(indices, np.uint32, order='C')
 
 
 def _without_meshes(

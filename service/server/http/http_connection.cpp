@@ -147,6 +147,8 @@ class HttpConnection {
     // The head is gathered here, so that one that drips in, or stops, can still be told so.
     started_ = Clock::now();
     method_ = path_ = "-";
+    head_only_ = false;
+    version_ = 11;
     route_ = "none";
     const Clock::time_point end =
         started_ + std::chrono::duration_cast<Clock::duration>(seconds(context_.limits.header_s));
@@ -189,7 +191,8 @@ class HttpConnection {
     request.method = method_;
     path_ = std::string(view(head.target()).substr(0, 200));
     path_ = path_.substr(0, path_.find('?'));
-    const bool head_only = head.method() == http::verb::head;
+    head_only_ = head.method() == http::verb::head;
+    version_ = head.version();
     keep_alive_ = head.keep_alive();
     if (head.version() != 11 && head.version() != 10) {
       refusal_ = Problem{400, "bad-request", "only HTTP/1.1 and 1.0 are spoken here", ""};
@@ -220,7 +223,7 @@ class HttpConnection {
       HttpResponse response(std::get<Problem>(found));
       if (!allowed.empty()) response.headers.emplace_back("Allow", allowed);
       keep_alive_ = keep_alive_ && parser.is_done();
-      co_return co_await send(response, head_only) && keep_alive_;
+      co_return co_await send(response) && keep_alive_;
     }
     route_ = route->pattern;
     if (auto problem = refuse_parameters(*route, request)) {
@@ -252,6 +255,18 @@ class HttpConnection {
       co_return false;
     }
 
+    if (const auto coding = view(head[http::field::content_encoding]);
+        !coding.empty() && coding != "identity") {
+      refusal_ = Problem{415, "media-type", "a body is taken as it is, without Content-Encoding",
+                         "Content-Encoding"};
+      co_return co_await refuse();
+    }
+    if (const auto coding = view(head[http::field::transfer_encoding]);
+        !coding.empty() && !beast::iequals(head[http::field::transfer_encoding], "chunked")) {
+      refusal_ =
+          Problem{501, "not-implemented", "the only Transfer-Encoding here is chunked", "Transfer-Encoding"};
+      co_return co_await refuse();
+    }
     const bool sink_fits = route->sink && media_type(request.content_type) == route->sink_type;
     const std::size_t limit = sink_fits ? route->sink_limit : route->body_limit;
     const bool has_body = !parser.is_done() && (parser.chunked() || parser.content_length().value_or(0) > 0);
@@ -277,7 +292,7 @@ class HttpConnection {
     }
     HttpResponse response = co_await answer(*route, request, sink.get());
     sink.reset();
-    co_return co_await send(response, head_only) && keep_alive_;
+    co_return co_await send(response) && keep_alive_;
   }
 
   bool head_complete() const {
@@ -362,7 +377,7 @@ class HttpConnection {
   asio::awaitable<bool> refuse() {
     keep_alive_ = false;
     HttpResponse response(refusal_);
-    co_await send(response, false);
+    co_await send(response);
     // The client may still be sending; if it is not listened to for a moment, a reset may take the answer
     // from it.
     error_code error;
@@ -378,7 +393,7 @@ class HttpConnection {
     co_return false;
   }
 
-  asio::awaitable<bool> send(HttpResponse& response, bool head_only) {
+  asio::awaitable<bool> send(HttpResponse& response) {
     account(response.status);
     http::response<http::buffer_body> message(static_cast<http::status>(response.status), 11);
     message.set(http::field::server, "palpate");
@@ -386,11 +401,13 @@ class HttpConnection {
     message.set("X-Content-Type-Options", "nosniff");
     message.set(http::field::cache_control, "no-store");
     for (const auto& [name, value] : response.headers) message.set(name, value);
+    // Who speaks HTTP/1.0 knows no chunks: what has no length known beforehand ends with the connection.
+    const bool streamed = response.source && !response.source_length, chunked = streamed && version_ == 11;
+    keep_alive_ = keep_alive_ && chunked == streamed;
     message.keep_alive(keep_alive_ && !context_.stopping);
-    const bool chunked = response.source && !response.source_length;
     if (chunked)
       message.chunked(true);
-    else if (response.status != 204)
+    else if (!streamed && response.status != 204)
       message.content_length(response.source ? *response.source_length : response.body.size());
     message.body().data = nullptr;
     message.body().more = true;
@@ -399,7 +416,7 @@ class HttpConnection {
     stream_.lowest().expires_after(seconds(context_.limits.piece_s));
     co_await http::async_write_header(stream_, serializer, asio::redirect_error(asio::use_awaitable, error));
     if (error) co_return false;
-    if (head_only || response.status == 204) co_return true;
+    if (head_only_ || response.status == 204) co_return true;
     if (!response.source) co_return co_await write_all(asio::buffer(response.body));
     for (;;) {
       stream_.lowest().expires_never();
@@ -455,7 +472,8 @@ class HttpConnection {
   Clock::time_point started_{};
   std::string method_, path_, route_;
   Problem refusal_;  ///< not a parameter of refuse(): GCC 12 destroys such a temporary of a co_await twice
-  bool keep_alive_ = true, upgraded_ = false;
+  unsigned version_ = 11;  ///< of the request: 10 or 11
+  bool keep_alive_ = true, upgraded_ = false, head_only_ = false;
 };
 
 }  // namespace

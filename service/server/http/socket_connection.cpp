@@ -40,8 +40,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.read_message_max(context_.limits.message_bytes);
-    const beast::string_view offered = head[http::field::sec_websocket_protocol];
-    const bool named = offered.find("palpate") != beast::string_view::npos;
+    const bool named = http::token_list(head[http::field::sec_websocket_protocol]).exists("palpate");
     socket_.set_option(websocket::stream_base::decorator([named](websocket::response_type& response) {
       response.set(http::field::server, "palpate");
       if (named) response.set(http::field::sec_websocket_protocol, "palpate");

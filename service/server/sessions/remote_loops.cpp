@@ -184,6 +184,7 @@ struct RemoteLoops::Loop {
   std::function<void()> wake;
   std::optional<PoseMessage> pose, newest;  ///< not taken up yet; the last that came
   std::optional<SocketMessage> reply;
+  std::uint32_t reply_for = 0;  ///< poses: the one that it answers, and those skipped before it
   std::uint32_t skipped = 0;
   bool queued = false, closed = false;
 };
@@ -327,6 +328,11 @@ void RemoteLoops::answer(Loop& loop) {
   loop.slot.sample = {loop.count++, pose->pose};
   const Result<void> solved = loop.solve(*pose);
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - pose->arrived).count();
+  {
+    const std::lock_guard lock(loop.mutex);
+    if (loop.closed) return;
+    if (std::exchange(loop.reply, std::nullopt)) skipped += loop.reply_for;  // not sent in time
+  }
   ++metrics_.loop_poses;
   metrics_.loop_s.add(us / 1e6);
 
@@ -395,7 +401,8 @@ void RemoteLoops::answer(Loop& loop) {
     const std::lock_guard lock(loop.mutex);
     if (loop.closed) return;
     loop.closed = message.close;
-    loop.reply = std::move(message);  // in place of one that was not sent in time
+    loop.reply = std::move(message);
+    loop.reply_for = skipped + 1;
     wake = loop.wake;
   }
   if (wake) wake();

@@ -194,6 +194,11 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
           .count();
   const bool simulated = session->device_name == "simulated";
+  if (session->device_name.starts_with("replay:"))
+    return bad_request(
+        "a session replays the trace that its scene names: device.path beside \"driver\": \"replay\"",
+        "device");
+  const bool is_file = session->device_name == "replay";
 
   std::unique_lock lock(mutex_);
   if (closed_) return Problem{503, "busy", "the server stops", ""};
@@ -202,7 +207,7 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
   for (const auto& other : sessions_) {
     if (other->is_over()) continue;
     ++running;
-    if (!simulated && other->device_name == session->device_name)
+    if (!simulated && !is_file && other->device_name == session->device_name)
       return Problem{409, "conflict",
                      "the device " + session->device_name + " is in use by session " + other->id, "device"};
   }
