@@ -73,10 +73,6 @@ std::string distrust_stl_facets(std::string_view text) {
   return {};
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::size_t kStlHeader = 84, kStlFacet = 50;  // bytes
 
 std::uint32_t binary_stl_facets(std::string_view bytes) {
@@ -226,10 +222,14 @@ std::string distrust_obj(std::string_view bytes) {
   std::string joined;  // where lines go on in the next: a backslash and a line's end are a blank
   if (bytes.find("\\\n") != std::string_view::npos || bytes.find("\\\r\n") != std::string_view::npos) {
     joined = bytes;
+    // Where the line begins that a backslash is in, as far as it is joined, and up to where that is known.
+    std::size_t begin = 0, seen = 0;
     for (std::size_t at = joined.find('\\'); at != std::string::npos; at = joined.find('\\', at + 1)) {
       const std::size_t end = joined.compare(at + 1, 2, "\r\n") == 0 ? at + 2 : at + 1;
       if (end >= joined.size() || joined[end] != '\n') continue;
-      const std::size_t before = joined.rfind('\n', at), begin = before == std::string::npos ? 0 : before + 1;
+      const std::size_t before = std::string_view(joined).substr(seen, at - seen).rfind('\n');
+      if (before != std::string_view::npos) begin = seen + before + 1;
+      seen = end + 1;
       if (joined.compare(begin, 2, "o ") == 0 || joined.compare(begin, 2, "g ") == 0)
         return fmt::format(
             "has a name in line {} that ends in a backslash, with which the next line belongs to it",

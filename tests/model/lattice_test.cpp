@@ -104,6 +104,19 @@ TEST(Weld, CollapsedTrianglesKeepTheirNumber) {
   EXPECT_TRUE(built->closed) << "collapsed triangles are left out";
 }
 
+TEST(Weld, WhatSinglePrecisionLeavesNothingOfIsToldWhere) {
+  const auto refused = [](double at) {
+    const Mesh mesh{{Vec3(at, 0, 0), Vec3(at, 0, 0), Vec3(at, 0, 0)}, {{0, 1, 2}}, {{"a", 0, 1}}};
+    return snap_and_weld(mesh, {.step_m = 0x1p-28, .origin_m = Vec3(at, 0, 0)}).error().sentence;
+  };
+  EXPECT_EQ(refused(1), "all 1 triangles collapse on the lattice (step 3.725290298461914e-09 m)");
+  // 2^20 m, where floats are 2^-3 m apart.
+  EXPECT_EQ(refused(1048576),
+            "all 1 triangles collapse on the lattice (step 3.725290298461914e-09 m); they lie 1.05e+06 m "
+            "from their "
+            "origin, where single precision has steps of 0.12 m");
+}
+
 TEST(Normals, WeightIsTheInverseOfTheDominantComponent) {
   const Mesh mesh = triangle({0, 0, 0}, {1, 0, 1}, {0, 1, 0});  // normal (−1, 0, 1): a tie between x and z
   MeshReport report;
