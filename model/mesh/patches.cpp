@@ -10,6 +10,7 @@
 
 #include "model/lattice/sample_grid.h"
 #include "model/lattice/triangle.h"
+#include "model/mesh/components.h"
 
 namespace palpate {
 namespace {
@@ -45,29 +46,6 @@ constexpr double kMostCells = 1 << 20;  // of a triangle whose samples are count
                                         // so many miss of its area is a thousandth)
 constexpr double kMostOfOne =
     3.99;  // 2^level s² that one extra sample stands for: below 4, which is what Q30 holds
-
-/// Triangles joined into components; the smallest is the root.
-class Components {
- public:
-  explicit Components(std::size_t count) : parent_(count) {
-    for (std::uint32_t i = 0; i < count; ++i) parent_[i] = i;
-  }
-  std::uint32_t find(std::uint32_t t) {
-    while (parent_[t] != t) {
-      parent_[t] = parent_[parent_[t]];
-      t = parent_[t];
-    }
-    return t;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Numbering {
   std::vector<std::uint32_t> of;  ///< by triangle, kNoPatch for collapsed ones

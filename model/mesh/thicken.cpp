@@ -4,40 +4,22 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "model/mesh/components.h"
+
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr std::uint32_t kBorder = UINT32_MAX;
 constexpr double kLeastCosine = 0.5;  // of a mitre: twice half the thickness
 
-using Triple = std::array<std::int64_t, 3>;
+using Cell = std::array<std::int64_t, 3>;
 
 /// Corner k of triangle t is number 3 t + k; so is the side from there to the next corner.
-std::uint32_t next(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-
-/// What hangs together: each corner's root stands for all that were joined with it.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t root(std::uint32_t of) {
-    while (parent_[of] != of) of = parent_[of] = parent_[parent_[of]];
-    return of;
-  }
-  /// The smaller root stays.
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
+std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
 class Sheets {
  public:
@@ -50,37 +32,37 @@ class Sheets {
   }
 
   std::size_t copies() const {
-    return static_cast<std::size_t>(std::count(state_.begin(), state_.end(), State::kCopy));
+    return static_cast<std::size_t>(std::count(state_.begin(), state_.end(), State::kTwin));
   }
-  bool is_copy(std::uint32_t t) const { return state_[t] == State::kCopy; }
-  bool is_open(std::uint32_t t) const { return state_[t] == State::kOpen; }
+  bool is_copy(std::uint32_t t) const { return state_[t] == State::kTwin; }
+  bool is_open(std::uint32_t t) const { return state_[t] == State::kWall; }
   /// The corners of an open triangle, turned as all of its piece.
   std::array<std::uint32_t, 3> corners(std::uint32_t t) const {
     return turned_[t] ? std::array{3 * t, 3 * t + 2, 3 * t + 1} : std::array{3 * t, 3 * t + 1, 3 * t + 2};
   }
-  bool is_border(std::uint32_t side) const { return partner_[side] == kNone; }
+  bool is_border(std::uint32_t side) const { return partner_[side] == kBorder; }
   /// By corner: a number that corners of open pieces share which meet in one place, round which their
   /// triangles hang together.
   std::vector<std::uint32_t> joined_corners() {
-    Joined corners(places_.size());
+    Components corners(places_.size());
     for (std::uint32_t side = 0; side < partner_.size(); ++side) {
       const std::uint32_t other = partner_[side];
-      if (other == kNone || other < side) continue;
+      if (other == kBorder || other < side) continue;
       const bool along = places_[side] == places_[other];
-      corners.join(side, along ? other : next(other));
-      corners.join(next(side), along ? next(other) : other);
+      corners.join(side, along ? other : next_corner(other));
+      corners.join(next_corner(side), along ? next_corner(other) : other);
     }
     std::vector<std::uint32_t> out(places_.size());
-    for (std::uint32_t corner = 0; corner < out.size(); ++corner) out[corner] = corners.root(corner);
+    for (std::uint32_t corner = 0; corner < out.size(); ++corner) out[corner] = corners.find(corner);
     return out;
   }
 
  private:
-  enum class State : std::uint8_t { kClosed, kOpen, kFlat, kCopy };  ///< kFlat: two of its corners are one
+  enum class State : std::uint8_t { kWhole, kWall, kLine, kTwin };  ///< kLine: two of its corners are one
 
   /// Corners in one cell are one.
   void find_places(double cell) {
-    std::vector<std::pair<Triple, std::uint32_t>> cells(mesh_.vertices.size());
+    std::vector<std::pair<Cell, std::uint32_t>> cells(mesh_.vertices.size());
     for (std::uint32_t v = 0; v < cells.size(); ++v) {
       for (int k = 0; k < 3; ++k)
         cells[v].first[static_cast<std::size_t>(k)] = std::llround(mesh_.vertices[v][k] / cell);
@@ -97,36 +79,36 @@ class Sheets {
   }
 
   void find_triangles() {
-    state_.assign(mesh_.triangles.size(), State::kClosed);
-    std::vector<std::pair<Triple, std::uint32_t>> all(state_.size());
+    state_.assign(mesh_.triangles.size(), State::kWhole);
+    std::vector<std::pair<Cell, std::uint32_t>> all(state_.size());
     for (std::uint32_t t = 0; t < all.size(); ++t) {
-      Triple three{places_[3 * t], places_[3 * t + 1], places_[3 * t + 2]};
+      Cell three{places_[3 * t], places_[3 * t + 1], places_[3 * t + 2]};
       std::sort(three.begin(), three.end());
-      if (three[0] == three[1] || three[1] == three[2]) state_[t] = State::kFlat;
+      if (three[0] == three[1] || three[1] == three[2]) state_[t] = State::kLine;
       all[t] = {three, t};
     }
     std::sort(all.begin(), all.end());
     for (std::size_t i = 1; i < all.size(); ++i)
-      if (all[i].first == all[i - 1].first && state_[all[i].second] != State::kFlat)
-        state_[all[i].second] = State::kCopy;
+      if (all[i].first == all[i - 1].first && state_[all[i].second] != State::kLine)
+        state_[all[i].second] = State::kTwin;
   }
 
-  bool counts(std::uint32_t t) const { return state_[t] == State::kClosed || state_[t] == State::kOpen; }
+  bool counts(std::uint32_t t) const { return state_[t] == State::kWhole || state_[t] == State::kWall; }
 
   void find_partners() {
-    struct Side {
+    struct NumberedSide {
       std::uint32_t low, high, number;
     };
-    std::vector<Side> sides;
+    std::vector<NumberedSide> sides;
     for (std::uint32_t side = 0; side < places_.size(); ++side)
       if (counts(side / 3)) {
-        const auto [low, high] = std::minmax({places_[side], places_[next(side)]});
+        const auto [low, high] = std::minmax({places_[side], places_[next_corner(side)]});
         sides.push_back({low, high, side});
       }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    std::sort(sides.begin(), sides.end(), [](const NumberedSide& a, const NumberedSide& b) {
       return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
     });
-    partner_.assign(places_.size(), kNone);
+    partner_.assign(places_.size(), kBorder);
     for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
       while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
       if (end - i != 2) continue;
@@ -149,7 +131,7 @@ class Sheets {
         const std::uint32_t t = next_ones.back();
         next_ones.pop_back();
         for (std::uint32_t side = 3 * t; side < 3 * t + 3; ++side) {
-          if (partner_[side] == kNone) continue;
+          if (partner_[side] == kBorder) continue;
           const std::uint32_t other = partner_[side] / 3;
           // Of two that are turned alike one runs along the side, the other one back.
           const bool turned = turned_[t] != (places_[side] == places_[partner_[side]]);
@@ -158,8 +140,8 @@ class Sheets {
             turned_[other] = turned;
             next_ones.push_back(other);
           } else if (turned_[other] != turned) {
-            partner_[partner_[side]] = kNone;
-            partner_[side] = kNone;
+            partner_[partner_[side]] = kBorder;
+            partner_[side] = kBorder;
           }
         }
       }
@@ -167,21 +149,22 @@ class Sheets {
   }
 
   void find_open() {
-    Joined pieces(state_.size());
+    Components pieces(state_.size());
     for (std::uint32_t side = 0; side < partner_.size(); ++side)
-      if (partner_[side] != kNone) pieces.join(side / 3, partner_[side] / 3);
+      if (partner_[side] != kBorder) pieces.join(side / 3, partner_[side] / 3);
     std::vector<bool> open(state_.size(), false);
     for (std::uint32_t side = 0; side < partner_.size(); ++side)
-      if (counts(side / 3) && partner_[side] == kNone) open[pieces.root(side / 3)] = true;
+      if (counts(side / 3) && partner_[side] == kBorder) open[pieces.find(side / 3)] = true;
     for (std::uint32_t t = 0; t < state_.size(); ++t)
-      if (counts(t) && open[pieces.root(t)]) state_[t] = State::kOpen;
+      if (counts(t) && open[pieces.find(t)]) state_[t] = State::kWall;
   }
 
   const Mesh& mesh_;
-  std::vector<std::uint32_t> places_;   ///< by corner: vertices in one place have one number
-  std::vector<State> state_;            ///< by triangle
-  std::vector<std::uint32_t> partner_;  ///< by side: the only other one along the same edge; kNone: a border
-  std::vector<bool> turned_;            ///< by triangle
+  std::vector<std::uint32_t> places_;  ///< by corner: vertices in one place have one number
+  std::vector<State> state_;           ///< by triangle
+  std::vector<std::uint32_t>
+      partner_;               ///< by side: the only other one along the same edge; kBorder: a border
+  std::vector<bool> turned_;  ///< by triangle
 };
 
 /// How far each joined corner goes out, by its number.
@@ -226,11 +209,11 @@ Thickened thicken(const Mesh& mesh, double thickness_m) {
   const std::vector<std::uint32_t> joined = sheets.joined_corners();
   const std::vector<Vec3> way = ways_out(mesh, sheets, joined, thickness_m / 2);
   std::vector<std::uint32_t> front(joined.size(),
-                                   kNone);  // vertex of a joined corner; the next one is its back
+                                   kBorder);  // vertex of a joined corner; the next one is its back
   for (std::uint32_t corner = 0; corner < joined.size(); ++corner) {
     if (!sheets.is_open(corner / 3)) continue;
     std::uint32_t& vertex = front[joined[corner]];
-    if (vertex == kNone) {
+    if (vertex == kBorder) {
       vertex = static_cast<std::uint32_t>(out.mesh.vertices.size());
       const Vec3 middle = mesh.vertices[mesh.triangles[corner / 3][corner % 3]];
       out.mesh.vertices.push_back(middle + way[joined[corner]]);
@@ -256,7 +239,7 @@ Thickened thicken(const Mesh& mesh, double thickness_m) {
       backs.push_back({face[0] + 1, face[2] + 1, face[1] + 1});
       for (std::size_t k = 0; k < 3; ++k) {
         // The side of the two corners, whichever way the file runs along it.
-        const std::uint32_t a = corners[k], b = corners[(k + 1) % 3], side = next(a) == b ? a : b;
+        const std::uint32_t a = corners[k], b = corners[(k + 1) % 3], side = next_corner(a) == b ? a : b;
         if (!sheets.is_border(side)) continue;
         const std::uint32_t from = face[k], to = face[(k + 1) % 3];
         borders.push_back({to, from, from + 1});

@@ -5,6 +5,7 @@
 
 #include "model/generate/solids.h"
 #include "model/lattice/voxel_size.h"
+#include "model/mesh/weld.h"
 #include "model/scene/geometry_build.h"
 
 namespace palpate {
