@@ -58,8 +58,8 @@ std::string where_digits_end(const Mesh& mesh) {
   double farthest = 0;
   for (const Vec3& v : mesh.vertices)
     farthest = std::fmax(farthest, std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))));
-  constexpr double kFar = 1e4;  // m: single precision has steps of a millimetre there
-  if (farthest < kFar) return {};
+  constexpr double kMillimetreSteps = 1e4;  // m: from there on, of single precision
+  if (farthest < kMillimetreSteps) return {};
   return fmt::format("; they lie {:.3g} m from their origin, where single precision has steps of {:.2g} m",
                      farthest, std::ldexp(farthest, -23));
 }

@@ -376,7 +376,10 @@ void add_bench_command(CLI::App& app, BenchOptions& options, const Parts& parts,
       app.add_subcommand("bench",
                          "measure: a frame, batches, growth, preparation, other libraries, questions, plans, "
                          "the force's error and stability, the loop's punctuality");
-  bench->require_subcommand(1);
+  bench->require_subcommand(0, 1);  // so that a word that is none is named; asked for where there is no word
+  bench->callback([bench] {
+    if (bench->get_subcommands().empty()) throw CLI::RequiredError("A bench");
+  });
   bench->footer(kFooter);
   Benches(*bench, options, parts, outcome).add_all();
 }

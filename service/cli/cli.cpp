@@ -369,10 +369,12 @@ void add_generate_command(CLI::App& app, GenerateOptions& generate, Result<void>
   generate_app
       ->add_option("--triangles", generate.triangles,
                    "of the mock-up, 1,000 to 10,000,000; default the chapter's 25,000 or 100,000")
+      ->check(CLI::Range(std::uint64_t{1'000}, std::uint64_t{10'000'000}).description(""))
       ->type_name("N");
   generate_app
       ->add_option("--tool-triangles", generate.tool_triangles,
-                   "of the tool; default the chapter's 1,500 or 2,000")
+                   "of the tool, likewise; default the chapter's 1,500 or 2,000")
+      ->check(CLI::Range(std::uint64_t{1'000}, std::uint64_t{10'000'000}).description(""))
       ->type_name("N");
   generate_app->add_option("--out", generate.out, "directory for meshes, path and scene.json")
       ->required()
