@@ -524,6 +524,8 @@ def test_no_path_leads_out_of_the_root():
             problem(server.ask('POST', '/v1/scenes', {'path': path}), 403, 'outside-root')
         for path in ('', '\0', 'no.json', 'x' * 5000, '.'):
             expect(server.ask('POST', '/v1/scenes', {'path': path}).status in (400, 404), path)
+        told = problem(server.ask('POST', '/v1/scenes', {'path': 'block.stl'}), 400, 'bad-value')
+        expect(told['field'] == 'scene' and told['detail'].startswith('scene file: parse error'), told)
         for run, status in (
             ('run', 403),
             ('..%2f' + outside.path.name, 403),

@@ -155,3 +155,22 @@ def test_what_is_wrong_with_a_scene_is_said(arguments, sentence):
 def test_what_is_wrong_with_poses_is_said(boxes, poses, sentence):
     with pytest.raises(palpate.PalpateError, match=sentence):
         boxes.touches(poses)
+
+
+def test_sheets_in_memory_have_walls_where_the_scene_says():
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * 0.1
+
+    def answer(thickness):
+        halves = np.array([[0, 1, 2], [0, 2, 3]])
+        scene = palpate.Scene(
+            {
+                'static': [{'mesh': (square, halves), 'sheet_thickness': thickness}],
+                'tool': {'mesh': (square * 0.2, halves), 'sheet_thickness': thickness},
+            },
+            engine='cpu',
+        )
+        return scene.query([0, 0, 0.0015, 0, 0, 0, 1])
+
+    assert not answer(0).contact
+    walls = answer(0.002)  # 0.5 mm in each other
+    assert walls.contact and walls.force[2] > 0.1 > 1e6 * abs(walls.force[:2]).max()

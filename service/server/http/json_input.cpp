@@ -36,18 +36,19 @@ bool nests_deeper(std::string_view text, std::size_t depth) {
 }
 
 std::variant<nlohmann::json, Problem> read_json_object(std::string_view text, std::size_t depth,
-                                                       const std::vector<std::string>& keys) {
+                                                       const std::vector<std::string>& keys,
+                                                       const std::string& what) {
   if (nests_deeper(text, depth))
-    return bad_request("the body nests deeper than " + std::to_string(depth) + " levels", "body");
+    return bad_request("the " + what + " nests deeper than " + std::to_string(depth) + " levels", "body");
   nlohmann::json value;
   try {
-    value = parse_scene_text("body", std::string(text));
+    value = parse_scene_text(what, std::string(text));
   } catch (const SceneFault& fault) {
     return bad_request(one_line(fault.sentence.substr(0, 400)), "body");
   } catch (const std::exception& error) {
-    return bad_request("the body is no JSON: " + shown_text(error.what()), "body");
+    return bad_request("the " + what + " is no JSON: " + shown_text(error.what()), "body");
   }
-  if (!value.is_object()) return bad_request("the body is no JSON object", "body");
+  if (!value.is_object()) return bad_request("the " + what + " is no JSON object", "body");
   if (!keys.empty())
     for (const auto& [key, ignored] : value.items())
       if (std::find(keys.begin(), keys.end(), key) == keys.end())

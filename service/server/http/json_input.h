@@ -10,9 +10,10 @@
 namespace palpate {
 
 /// JSON of a client: an object that has only `keys` (empty: any), nested no deeper than `depth`, without
-/// duplicate keys. Never throws.
+/// duplicate keys. Never throws. `what` it is, for sentences.
 std::variant<nlohmann::json, Problem> read_json_object(std::string_view text, std::size_t depth,
-                                                       const std::vector<std::string>& keys = {});
+                                                       const std::vector<std::string>& keys = {},
+                                                       const std::string& what = "body");
 
 /// Whether brackets nest deeper than `depth`, told without parsing.
 bool nests_deeper(std::string_view text, std::size_t depth);

@@ -84,7 +84,7 @@ std::variant<SceneContent, Problem> read_scene_content(const fs::path& file, con
         "the scene file is larger than " + std::to_string(limits.json_bytes) + " bytes, or no file", "scene"};
   std::ifstream in(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  const auto scene = read_json_object(text, limits.json_depth);
+  const auto scene = read_json_object(text, limits.json_depth, {}, "scene file");
   if (const auto* problem = std::get_if<Problem>(&scene))
     return Problem{400, "bad-value", problem->detail, "scene"};
 
