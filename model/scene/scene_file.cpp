@@ -89,6 +89,8 @@ void read_generate(const SceneObject& body, const char* usual_body, MeshSource& 
   if (triangles > 0) source.generate_parameters["triangles"] = triangles;
 }
 
+constexpr double kThinnestSheet = 1e-6;  // m: thicken() tells corners apart by a 4,096th of it, in 64 bits
+
 void read_source(const SceneObject& body, const char* usual_body, const GivenMeshes& given,
                  MeshSource& source) {
   if (body.has("mesh") == body.has("generate"))
@@ -119,6 +121,9 @@ void read_source(const SceneObject& body, const char* usual_body, const GivenMes
   body.text("part", source.part);
   body.texts("without", source.without);
   body.number("sheet_thickness", {0, 1, " m"}, source.sheet_thickness_m);
+  if (source.sheet_thickness_m > 0 && source.sheet_thickness_m < kThinnestSheet)
+    body.fail("sheet_thickness",
+              "is " + body.at("sheet_thickness").dump() + "; it must be 0, or from 1e-06 to 1 m");
 }
 
 void read_statics(const SceneObject& scene_json, const GivenMeshes& given, Scene& scene) {

@@ -103,15 +103,16 @@ bool all_are_places(const Mesh& mesh) {
 
 Mesh walled(const Mesh& mesh, const MeshSource& source, std::vector<std::string>& warnings) {
   Thickened thick = thicken(mesh, source.sheet_thickness_m);
-  if (thick.walls == 0)
+  if (thick.walls == 0) {
     warnings.push_back(fmt::format("{}: no piece of it is open, so \"sheet_thickness\" changes nothing",
                                    source_name(source)));
-  else
-    warnings.push_back(fmt::format(
-        "{}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} triangles{}",
-        source_name(source), thick.walls, mesh.triangles.size(), 1e3 * source.sheet_thickness_m,
-        thick.mesh.triangles.size(),
-        thick.copies == 0 ? "" : fmt::format(", without {} that were there twice", thick.copies)));
+    return mesh;
+  }
+  warnings.push_back(fmt::format(
+      "{}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} triangles{}",
+      source_name(source), thick.walls, mesh.triangles.size(), 1e3 * source.sheet_thickness_m,
+      thick.mesh.triangles.size(),
+      thick.copies == 0 ? "" : fmt::format(", without {} that were there twice", thick.copies)));
   return std::move(thick.mesh);
 }
 
