@@ -5,6 +5,7 @@
 
 namespace palpate {
 
+/// What thicken() makes.
 struct Thickened {
   Mesh mesh;
   std::size_t walls = 0;   ///< triangles that became walls; 0: nothing is open
