@@ -88,71 +88,11 @@ std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const
   return best;
 }
 
-namespace {
-
-/// Σ of the signs of the crossings between a lattice point and another, with triangles that bound a solid.
-int crossed(const LatticeMesh& mesh, const BoxTree& tree, const Int3& from, const Int3& to) {
-  if (from == to) return 0;
-  const Int3 direction = to - from;
-  std::vector<std::uint32_t> candidates;
-  tree.along_ray(from, direction, candidates);
-  int net = 0;
-  for (const std::uint32_t t : candidates) {
-    if (mesh.collapsed(t) || is_sheet(mesh, t)) continue;
-    const Triangle triangle = triangle_of(mesh, t);
-    // What is crossed beyond the end is crossed from there, too.
-    const auto crossing = ray_crosses(from, direction, triangle);
-    if (crossing && !ray_crosses(to, direction, triangle)) net += crossing->sign;
-  }
-  return net;
-}
-
-constexpr int kNear = 8;  // voxels (docs/EXACTNESS.md section 4)
-
-/// How many shells a V_bnd voxel's middle is in: of six walks to the next voxels that are not V_bnd the one
-/// that says least is right, a near one before all that are far.
-int winding_by_walks(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition,
-                     const Int3& voxel) {
-  struct Said {
-    bool far;
-    int shells;
-  };
-  std::array<Said, 6> said{};
-  for (std::size_t i = 0; i < 6; ++i) {
-    const int axis = static_cast<int>(i / 2), way = i % 2 == 0 ? 1 : -1;
-    Int3 end = voxel;
-    VoxelClass kind = VoxelClass::kBoundary;
-    int length = 0;
-    for (; kind == VoxelClass::kBoundary; ++length) {
-      end[axis] += way;
-      kind = partition.in_grid(end) ? partition.classes.at(end) : VoxelClass::kExternal;
-    }
-    Int3 until = partition.centre(voxel);
-    until[axis] += way * length * partition.grid.size;
-    said[i] = {length > kNear,
-               crossed(mesh, tree, partition.centre(voxel), until) + (kind == VoxelClass::kInternal ? 1 : 0)};
-  }
-  return std::min_element(
-             said.begin(), said.end(),
-             [](const Said& a, const Said& b) { return a.far != b.far ? b.far : a.shells < b.shells; })
-      ->shells;
-}
-
-}  // namespace
-
-bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition,
-                 const Int3& point) {
-  const Int3 voxel = partition.holding(point);
-  return winding_by_walks(mesh, tree, partition, voxel) +
-             crossed(mesh, tree, point, partition.centre(voxel)) >
-         0;
-}
-
 bool inside_mockup(const Frame& frame, const Int3& point) {
   const VoxelClass voxel_class = frame.scene.mockup.class_of(point);
   if (voxel_class != VoxelClass::kBoundary) return voxel_class == VoxelClass::kInternal;
   const LatticeMesh& mesh = frame.mockup();
-  if (!mesh.closed) return inside_open(mesh, frame.scene.mockup_tree, frame.scene.mockup, point);
+  if (!mesh.closed) return frame.open_mockup.inside(point);
   std::vector<std::uint32_t> candidates;
   const Int3 along_x(1, 0, 0);
   frame.scene.mockup_tree.along_ray(point, along_x, candidates);

@@ -20,10 +20,6 @@ std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const In
 /// `mesh`'s triangles.
 std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point);
 
-/// Whether a point in a V_bnd voxel of a body that is not `closed` lies inside it: the least that six walks
-/// say of the voxel's middle, and what lies between (EXACTNESS section 4).
-bool inside_open(const LatticeMesh& mesh, const BoxTree& tree, const Partition& partition, const Int3& point);
-
 /// Whether a world lattice point lies inside the mock-up.
 bool inside_mockup(const Frame& frame, const Int3& point);
 

@@ -252,6 +252,7 @@ class Summing {
     push.whole = weight;
     push.weight =
         sheet ? weight : counted_weight(weight, is_thin(mockup, id), is_thin(tool, below->triangle));
+    if (!tool.closed) push.weight = frame_.open_tool.sure(push.weight, to_tool(frame_.pose, point));
     if (sheet) out_.flags |= kFlagSheet;
     add_sample(push, id, below->triangle, carrier(id));
   }
@@ -266,6 +267,7 @@ class Summing {
     Push push{.at = point, .against = mockup.unit_normal_q30[below->triangle], .depth = below->steps};
     push.along = sheet ? push.against : -turned(frame_.pose, tool.unit_normal_q30[m]);
     push.weight = sheet ? weight : counted_weight(weight, is_thin(tool, m), is_thin(mockup, below->triangle));
+    if (!mockup.closed) push.weight = frame_.open_mockup.sure(push.weight, point);
     if (sheet) out_.flags |= kFlagSheet;
     add_sample(push, below->triangle, m, nullptr);
   }

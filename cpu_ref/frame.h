@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cpu_ref/box_tree.h"
+#include "cpu_ref/open_body.h"
 #include "cpu_ref/partition.h"
 #include "model/contact/contacts.h"
 #include "model/scene/plan.h"
@@ -36,8 +37,9 @@ struct Sample {
 struct Frame {
   const Prepared& scene;
   const LatticePose& pose;
-  const Ignored* ignored;    ///< may be null
-  const BoxTree& tool_tree;  ///< boxes of `tool`
+  const Ignored* ignored;             ///< may be null
+  const BoxTree& tool_tree;           ///< boxes of `tool`
+  OpenBody &open_mockup, &open_tool;  ///< what is asked of a body that is not closed
 
   std::vector<Int3> vertices;  ///< of the tool, transformed
   std::vector<Triangle> tool;  ///< of the tool, transformed; collapsed: in nothing at this pose

@@ -43,7 +43,11 @@ constexpr std::int32_t kToolGrow = 3;
 /// Answers one pose at a time on a prepared scene. Others may do the same beside it.
 class Asked final : public PoseQuery {
  public:
-  Asked(const Prepared& scene, const Plan& plan) : scene_(scene), plan_(plan) {}
+  Asked(const Prepared& scene, const Plan& plan)
+      : scene_(scene),
+        plan_(plan),
+        open_mockup_(scene.geometry->mockup, scene.mockup_tree, scene.mockup),
+        open_tool_(scene.geometry->tool, scene.tool_rest_tree, scene.tool) {}
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {
     out = Contacts();
@@ -70,7 +74,8 @@ class Asked final : public PoseQuery {
     }
     if (pose.beyond_lattice && pose.translation == Int3(0)) return {};
     try {
-      Frame frame{scene_, pose, nullptr, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+      Frame frame{scene_, pose, nullptr, tool_tree_, open_mockup_, open_tool_, {}, {},
+                  {},     {},   {},      {},         {},           {},         {}};
       tool_tree_.build(transform_tool(frame));
       out = smallest_distance(frame, within, collinear);
       return {};
@@ -81,13 +86,15 @@ class Asked final : public PoseQuery {
 
   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs() const { return pairs_; }
   std::uint64_t memory_bytes() const {
-    return tool_tree_.memory_bytes() + sizeof pairs_[0] * std::uint64_t{pairs_.capacity()};
+    return tool_tree_.memory_bytes() + open_mockup_.memory_bytes() + open_tool_.memory_bytes() +
+           sizeof pairs_[0] * std::uint64_t{pairs_.capacity()};
   }
 
  private:
   void answer(const LatticePose& pose, const Ignored* ignored, Contacts& out) {
     StageClock clock(out);
-    Frame frame{scene_, pose, ignored, tool_tree_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Frame frame{scene_, pose, ignored, tool_tree_, open_mockup_, open_tool_, {}, {},
+                {},     {},   {},      {},         {},           {},         {}};
     tool_tree_.build(transform_tool(frame));
     clock.done("transform");
     find_pairs(frame, out);
@@ -146,6 +153,7 @@ class Asked final : public PoseQuery {
   const Prepared& scene_;
   const Plan& plan_;
   BoxTree tool_tree_;
+  OpenBody open_mockup_, open_tool_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  ///< of the last query
 };
 

@@ -115,8 +115,7 @@ bool inside_tool(const Frame& frame, const Int3& point) {
   const Int3 own = to_tool(frame.pose, point);
   const VoxelClass voxel_class = frame.scene.tool.class_of(own);
   if (voxel_class != VoxelClass::kBoundary) return voxel_class == VoxelClass::kInternal;
-  if (!frame.tool_mesh().closed)
-    return inside_open(frame.tool_mesh(), frame.scene.tool_rest_tree, frame.scene.tool, own);
+  if (!frame.tool_mesh().closed) return frame.open_tool.inside(own);
   // The two frames round differently near the surface: the transformed mesh itself decides.
   std::vector<std::uint32_t> candidates;
   const Int3 along_x(1, 0, 0);

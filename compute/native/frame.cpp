@@ -33,14 +33,14 @@ void clear(Contacts& out) {
 }  // namespace
 
 Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan,
-             std::shared_ptr<const OpenInside> tool)
+             const OpenBodies& open)
     : geometry_(geometry),
       plan_(plan),
       order_(order_in_space(geometry.tool)),
       runs_(geometry.tool, order_),
       posed_(geometry.tool),
       broad_phase_(BroadPhase::make(geometry, scene, runs_)),
-      contact_(NarrowPhase::make(geometry, scene, order_, tool)),
+      contact_(NarrowPhase::make(geometry, scene, order_, open)),
       flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
       touch_(kUsualItems),
       candidate_pairs_(kUsualItems),
@@ -48,7 +48,7 @@ Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan
       chunks_(kUsualItems),
       inside_(kUsualItems),
       open_(kUsualItems) {
-  if (tool) broad_phase_.use(std::move(tool), scene.tool);
+  if (open.tool) broad_phase_.use(open.tool, scene.tool);
 }
 
 /// The helper, where one is wanted. Made by who asks first: a thread begins at its maker's priority and on

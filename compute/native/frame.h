@@ -23,10 +23,9 @@ namespace palpate::native {
 /// helper. query() allocates only when more is near than ever before.
 class Frame final : public PoseQuery {
  public:
-  /// Geometry, and what `scene` names, outlive this. `tool`: what is known of one that is not closed; may be
-  /// null. Allocates.
-  Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan,
-        std::shared_ptr<const OpenInside> tool);
+  /// Geometry, and what `scene` names, outlive this. `open`: what is known of bodies that are not closed.
+  /// Allocates.
+  Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan& plan, const OpenBodies& open);
   Frame(const Frame&) = delete;
   Frame& operator=(const Frame&) = delete;
 

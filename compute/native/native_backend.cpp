@@ -226,7 +226,7 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
     const ContentKey key = cache_ ? native::scene_key(geometry) : ContentKey{};
     if (cache_)
       if (auto found = native::find_scene(*cache_, key)) {
-        found->know(geometry.tool);
+        found->know(geometry);
         scene_ = std::make_shared<const native::Scene>(std::move(*found));
         return {};
       }
@@ -249,7 +249,7 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
   void begin(const SceneGeometry& geometry, const Plan& plan) {
     geometry_ = &geometry;
     plan_ = plan;
-    frame_.emplace(geometry, scene_->tables(), plan, scene_->open_tool);
+    frame_.emplace(geometry, scene_->tables(), plan, scene_->open);
   }
   void drop_frames() {
     questions_.clear();
@@ -265,8 +265,7 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
     std::vector<PoseQuery*> asked;
     for (unsigned i = 1; i < cores; ++i)
       asked.push_back(
-          helpers_
-              .emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_, scene_->open_tool))
+          helpers_.emplace_back(std::make_unique<Frame>(*geometry_, scene_->tables(), plan_, scene_->open))
               .get());
     threads_.emplace(std::move(asked));
   }

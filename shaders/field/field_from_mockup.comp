@@ -43,6 +43,7 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 #include "shaders/lib/batch/posed_table.glsl"
 POSED_TABLE(static, kBindStaticKeys)
 #include "shaders/lib/body/body_depth.glsl"
+#include "shaders/lib/body/body_doubt.glsl"
 #include "shaders/lib/body/body_walks.glsl"
 #include "shaders/lib/field_sums.glsl"
 #include "shaders/lib/ignored.glsl"
@@ -62,7 +63,8 @@ struct Asked {
   uint32_t entry, id, weight;
 };
 
-// The invocation's part of a sum as above, of what counts if it lies inside.
+// The invocation's part of a sum as above, of what counts if it lies inside. (Of a grid sample, which does,
+// nobody asks where it doesn't matter how many shells it is in.)
 int32_t ask(FieldPoint work, out Asked asked) {
   asked.point = work.point;
   asked.entry = work.triangle & ~kExtraPoint;
@@ -70,12 +72,13 @@ int32_t ask(FieldPoint work, out Asked asked) {
   asked.weight = work.weight;
   take_pose(static_pose(asked.entry));
   asked.at = tool_from_world(asked.point);
-  if ((work.triangle & kExtraPoint) == 0u) return speaks() ? 1 : 0;
+  if ((work.triangle & kExtraPoint) == 0u && (CLOSED || !body_doubted(body_voxel_of(asked.at))))
+    return speaks() ? 1 : 0;
   return inside_tool(asked.point, asked.at);
 }
 
 // False: nothing pushes.
-bool push_of(Asked asked, Depth depth, out Push push) {
+bool push_of(Asked asked, int32_t shells, Depth depth, out Push push) {
   const uint32_t entry = asked.entry, id = asked.id, weight = asked.weight;
   if (depth.triangle == kNone || is_ignored(id)) return false;
   push.at = asked.point;
@@ -89,6 +92,7 @@ bool push_of(Asked asked, Depth depth, out Push push) {
   push.counted = push.sheet || (thin && !in_thin) ? weight
                  : thin == in_thin               ? weight >> 1
                                                  : 0u;
+  if (!CLOSED) push.counted = body_sure(push.counted, asked.at, shells);
   push.static_id = id;
   push.mobile = depth.triangle;
   // CST and EST carry.
@@ -103,7 +107,7 @@ void main() {
   const bool counts = body_says_inside(CLOSED, sum);
   const Depth depth = body_depth(counts, asked.at);
   Push push;
-  const bool pushes = counts && speaks() && push_of(asked, depth, push);
+  const bool pushes = counts && speaks() && push_of(asked, sum, depth, push);
   add_pushes(pushes, push);
   tell_spent();
 }

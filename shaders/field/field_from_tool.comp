@@ -43,6 +43,7 @@ EDIT(kBindResultIgnored, uint32_t, result_ignored);
 POSED_TABLE(mobile, kBindMobileKeys)
 #include "shaders/lib/pose.glsl"
 #include "shaders/lib/body/body_depth.glsl"
+#include "shaders/lib/body/body_doubt.glsl"
 #include "shaders/lib/body/body_walks.glsl"
 #include "shaders/lib/field_sums.glsl"
 #include "shaders/lib/ignored.glsl"
@@ -65,7 +66,7 @@ int32_t inside_mockup(FieldPoint work) {
 }
 
 // False: nothing pushes.
-bool push_of(FieldPoint work, Depth depth, out Push push) {
+bool push_of(FieldPoint work, int32_t shells, Depth depth, out Push push) {
   const uint32_t mobile = mobile_id(work.triangle);
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;
@@ -79,6 +80,7 @@ bool push_of(FieldPoint work, Depth depth, out Push push) {
   push.counted = push.sheet || (thin && !in_thin) ? work.weight
                  : thin == in_thin               ? work.weight >> 1
                                                  : 0u;
+  if (!CLOSED) push.counted = body_sure(push.counted, work.point, shells);
   push.static_id = depth.triangle;
   push.mobile = mobile;
   push.slot = kNone;
@@ -97,7 +99,7 @@ void main() {
   const bool inside = body_says_inside(CLOSED, sum);
   const Depth depth = body_depth(inside, work.point);
   Push push;
-  const bool pushes = inside && speaks() && push_of(work, depth, push);
+  const bool pushes = inside && speaks() && push_of(work, sum, depth, push);
   add_pushes(pushes, push);
   tell_spent();
 }

@@ -31,7 +31,9 @@ PALPATE_CONSTANT int32_t kBindMockupLevels =
           // coarsest level, factors (Q30)
 PALPATE_CONSTANT int32_t kBindToolLevels = 107;  // likewise
 PALPATE_CONSTANT int32_t kBindMockupShells =
-    108;  // int32_t, by V_bnd voxel: how many shells its middle is in; of a mock-up that is not closed
+    108;  // int32_t, by V_bnd voxel: how many shells its middle is in; then two words a voxel: which
+          // neighbours say less of it, and of which it says less (shell_doubt.comp); of a mock-up that is not
+          // closed
 PALPATE_CONSTANT int32_t kBindFineShells =
     109;  // likewise of the tool's fine partition, where it has an inside
 

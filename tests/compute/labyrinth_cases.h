@@ -360,4 +360,32 @@ inline std::vector<ModuleRun> shells() {
   return runs;
 }
 
+/// What neighbours say of each other's middles.
+inline std::vector<ModuleRun> doubts() {
+  Numbers random(41);
+  std::vector<ModuleRun> runs;
+  for (const unsigned uniform : {0u, 60u}) {
+    Labyrinth l = labyrinth(random, {2, 3, 2}, uniform);
+    for (gpu::Brick& brick : l.bricks)
+      for (unsigned w = 0; w < 16; ++w) brick.internal_[w] = random() & ~brick.boundary[w];
+    Words place;
+    for (std::uint32_t s = 0; s < l.slots(); ++s)
+      for (unsigned bit = 0; bit < 512; ++bit)
+        if (l.boundary(s, bit)) place.push_back(512 * s + bit);
+    std::array<std::vector<std::int32_t>, 3> halves;
+    for (auto& of_axis : halves)
+      for (std::uint32_t i = 0; i < 2 * l.boundary_voxels; ++i)
+        of_axis.push_back(static_cast<std::int32_t>(random() % 8) / 7 -
+                          static_cast<std::int32_t>(random() % 8) / 7);
+    std::vector<std::int32_t> shells(std::size_t{3} * l.boundary_voxels + 7, -77);
+    for (std::uint32_t i = 0; i < l.boundary_voxels; ++i) shells[i] = static_cast<std::int32_t>(random() % 3);
+    runs.push_back({"shell_doubt",
+                    {l.slot, l.mixed, words_of(l.bricks), place, words_of(halves[0]), words_of(halves[1]),
+                     words_of(halves[2]), words_of(shells)},
+                    push_of(grid_of(l, l.boundary_voxels)),
+                    l.boundary_voxels + kMore});
+  }
+  return runs;
+}
+
 }  // namespace palpate::labyrinth_cases

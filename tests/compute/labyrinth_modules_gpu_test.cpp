@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "tests/compute/module_test.h"
 
@@ -211,6 +212,30 @@ TEST_F(LabyrinthModules, EveryEnclosedVoxelVotesByItsWinding) {
   EXPECT_GT(rows_shut_in, 10'000u);
 }
 
+/// A voxel of the grid.
+struct Place {
+  std::uint32_t slot = gpu::kBrickExternal;
+  std::size_t number = 0;  ///< of a boundary voxel
+  bool boundary = false, internal = false;
+};
+
+Place place_of(const Words& slots, const std::vector<gpu::Brick>& bricks, const Int3& n, const Int3& voxel) {
+  const Int3 brick = voxel / 8;
+  Place place{slots[static_cast<std::size_t>(brick.x + n.x * (brick.y + n.y * brick.z))], 0, false, false};
+  if (place.slot >= gpu::kBrickInternal) {
+    place.internal = place.slot == gpu::kBrickInternal;
+    return place;
+  }
+  const gpu::Brick& at = bricks[place.slot];
+  const auto bit = static_cast<unsigned>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
+  place.boundary = bit_of(at.boundary, bit);
+  place.internal = bit_of(at.internal_, bit);
+  place.number = at.first[bit / 32];
+  for (unsigned before = bit / 32 * 32; before < bit; ++before)
+    place.number += bit_of(at.boundary, before) ? 1u : 0u;
+  return place;
+}
+
 TEST_F(LabyrinthModules, TheLeastThatWalksSayIsKept) {
   constexpr std::int32_t kFar = 1 << 30;  // added to what a walk says that ends beyond eight voxels
   std::size_t into_uniform = 0;           // walks that end in a uniform V_int brick
@@ -223,28 +248,7 @@ TEST_F(LabyrinthModules, TheLeastThatWalksSayIsKept) {
     auto shells = values_of<std::int32_t>(run.buffers[6]);
     const int axis = static_cast<int>(push.axis), u = (axis + 1) % 3, v = (axis + 2) % 3,
               step = run.constants[0] != 0 ? 1 : -1;
-    struct Place {
-      std::uint32_t slot;
-      std::size_t number;  // of a boundary voxel
-      bool boundary, internal;
-    };
-    const auto look = [&](const Int3& voxel) {
-      const Int3 brick = voxel / 8;
-      Place place{run.buffers[0][static_cast<std::size_t>(brick.x + n.x * (brick.y + n.y * brick.z))], 0,
-                  false, false};
-      if (place.slot >= gpu::kBrickInternal) {
-        place.internal = place.slot == gpu::kBrickInternal;
-        return place;
-      }
-      const gpu::Brick& at = bricks[place.slot];
-      const auto bit = static_cast<unsigned>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
-      place.boundary = bit_of(at.boundary, bit);
-      place.internal = bit_of(at.internal_, bit);
-      place.number = at.first[bit / 32];
-      for (unsigned before = bit / 32 * 32; before < bit; ++before)
-        place.number += bit_of(at.boundary, before) ? 1u : 0u;
-      return place;
-    };
+    const auto look = [&](const Int3& voxel) { return place_of(run.buffers[0], bricks, n, voxel); };
     for (int row = 0; row < static_cast<int>(push.count); ++row)
       for (int k = 0; k < 8 * n[axis]; ++k) {
         Int3 from;
@@ -276,6 +280,63 @@ TEST_F(LabyrinthModules, TheLeastThatWalksSayIsKept) {
   });
   EXPECT_GT(into_uniform, 100u);
   EXPECT_GT(far, 100u);
+}
+
+TEST_F(LabyrinthModules, NeighboursSayLessOrMore) {
+  std::size_t bits = 0;  // set
+  each("shell_doubt", spirv::shell_doubt, [&](const ModuleRun& run, std::vector<Words>& want, auto&) {
+    const Int3 n = push_as<gpu::GridPush>(run).bricks;
+    const auto bricks = values_of<gpu::Brick>(run.buffers[2]);
+    auto shells = values_of<std::int32_t>(run.buffers[7]);
+    const std::size_t voxels = run.buffers[3].size();
+    std::array<std::vector<std::int32_t>, 3> halves_along;
+    for (std::size_t k = 0; k < 3; ++k) halves_along[k] = values_of<std::int32_t>(run.buffers[4 + k]);
+    const auto look = [&](const Int3& voxel) {
+      for (int k = 0; k < 3; ++k)
+        if (voxel[k] < 0 || voxel[k] >= 8 * n[k]) return Place{};
+      return place_of(run.buffers[0], bricks, n, voxel);
+    };
+    const auto said = [&](const Int3& voxel) {
+      const Place place = look(voxel);
+      return place.boundary ? shells[place.number] : place.internal ? 1 : 0;
+    };
+    // From a voxel's middle to that of the next one up an axis.
+    const auto up = [&](const Int3& voxel, int axis) {
+      Int3 next = voxel;
+      ++next[axis];
+      const std::vector<std::int32_t>& halves = halves_along[static_cast<std::size_t>(axis)];
+      const Place from = look(voxel), to = look(next);
+      return (from.boundary ? halves[2 * from.number + 1] : 0) + (to.boundary ? halves[2 * to.number] : 0);
+    };
+    std::vector<std::uint32_t> less(voxels, 0), more(voxels, 0);
+    Int3 a;
+    for (a.z = -1; a.z <= 8 * n.z; ++a.z)
+      for (a.y = -1; a.y <= 8 * n.y; ++a.y)
+        for (a.x = -1; a.x <= 8 * n.x; ++a.x)
+          for (unsigned bit = 14; bit < 27; ++bit) {  // each pair once, from the first in the grid
+            const int place = static_cast<int>(bit);
+            const Int3 to(place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1), b = a + to;
+            const Place one = look(a), other = look(b);
+            if (!one.boundary && !other.boundary) continue;
+            int seen = said(b) - said(a);  // how many more the other says
+            Int3 at = a;
+            for (int axis = 0; axis < 3; ++axis) {
+              if (to[axis] < 0) --at[axis];
+              if (to[axis] != 0) seen += to[axis] * up(at, axis);
+              if (to[axis] > 0) ++at[axis];
+            }
+            if (seen == 0) continue;
+            if (one.boundary) (seen < 0 ? less : more)[one.number] |= 1u << bit;
+            if (other.boundary) (seen > 0 ? less : more)[other.number] |= 1u << (26 - bit);
+          }
+    for (std::size_t v = 0; v < voxels; ++v) {
+      shells[voxels + 2 * v] = static_cast<std::int32_t>(less[v]);
+      shells[voxels + 2 * v + 1] = static_cast<std::int32_t>(more[v]);
+      bits += static_cast<std::size_t>(std::popcount(less[v]) + std::popcount(more[v]));
+    }
+    want[7] = words_of(shells);
+  });
+  EXPECT_GT(bits, 10'000u);
 }
 
 TEST_F(LabyrinthModules, AComponentOffTheBorderWithMoreVotesForIsInternal) {

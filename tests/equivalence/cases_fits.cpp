@@ -68,6 +68,19 @@ Mesh nearly_closed(Mesh mesh) {
   return mesh;
 }
 
+/// Two balls through each other, without some of their triangles: voxels doubt what their neighbours say.
+Mesh doubted_balls(double radius) {
+  Mesh balls =
+      joined({solids::sphere(radius * kMm, 24, 16),
+              lifted(solids::sphere(0.75 * radius * kMm, 24, 16), {0.45 * radius, 0.1 * radius, 0})});
+  std::vector<std::array<std::uint32_t, 3>> left;
+  for (std::size_t i = 0; i < balls.triangles.size(); ++i)
+    if (i % 61 != 1) left.push_back(balls.triangles[i]);
+  balls.triangles = std::move(left);
+  balls.parts = {{"balls", 0, static_cast<std::uint32_t>(balls.triangles.size())}};
+  return balls;
+}
+
 Mesh sheet(double half) {
   Mesh mesh;
   const double h = half * kMm;
@@ -248,6 +261,16 @@ std::vector<Case> fit_cases() {
           "nearly_closed_ball_on_a_plates_edge", "extra samples about a tool whose inside is voted",
           [thin_plate] { return thin_plate; }, [] { return nearly_closed(solids::sphere(6 * kMm, 24, 12)); },
           {.place = {11, 0, 0}, .along = 2, .turn = 0.5}),
+      fit(
+          "block_in_doubted_balls", "weights ramp down where voxels of the mock-up doubt that it is inside",
+          [] { return doubted_balls(12); },
+          [] {
+            return block({-5, -4, -4}, {5, 4, 4});
+          },
+          {.place = {8, 0, 0}, .along = 6, .turn = 1}, 1),
+      fit(
+          "doubted_balls_on_a_plates_edge", "the same of the tool", [thin_plate] { return thin_plate; },
+          [] { return doubted_balls(12); }, {.place = {11, 0, 0}, .along = 8, .turn = 1}, 1),
       fit(
           "block_through_a_sheet", "no inside on either side of a surface", [] { return sheet(12); },
           [] {

@@ -36,7 +36,8 @@ constexpr std::array kQuick{"peg of 24 sides tilted, play 0.3 mm",
                             "pin on a plate",
                             "cone's tip on a block",
                             "sheet from below",
-                            "open box from outside"};
+                            "open box from outside",
+                            "rod up an open pin"};
 
 /// What runs, chosen beforehand: nothing is skipped.
 std::vector<ForceCaseMaker> asked_cases() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -61,6 +62,9 @@ TEST(InsideCells, SayWhatCrossingsSayWhereTheySayAnything) {
     const PartitionLookup partition(view);
     const std::vector<std::uint8_t> boxes = SearchTables::boxes_of(mesh, view);
     InsideSearch plain(mesh, partition, boxes);
+    const auto shells = std::make_shared<OpenInside>();
+    shells->shells = OpenInside::count_shells(mesh, view, boxes, [] { return true; });
+    plain.use(shells);
     int asked = 0, known = 0, inside = 0;
     const InsideCells cells(mesh, view, boxes, [&](const Int3& point, const Int3&, std::uint32_t) {
       return plain.inside(point);

@@ -22,8 +22,8 @@ struct PartitionBuffers {
   VulkanBuffer boundary_place;  ///< uint32, one a boundary voxel: slot · 512 + bit; ascending
   VulkanBuffer list_begin;      ///< uint32, CSR over boundary voxels, + 1
   VulkanBuffer list_triangles;  ///< uint32 ids, ascending in each voxel
-  VulkanBuffer shells;  ///< int32, one a boundary voxel: how many shells its middle is in (EXACTNESS.md
-                        ///< section 4, "Vote"); empty where nobody asks
+  VulkanBuffer shells;  ///< kBindMockupShells of shaders/shared/frame_field.h (EXACTNESS.md section 4, "Vote"
+                        ///< and "Doubt"); empty where nobody asks
   bool has_internal = false;
 };
 

@@ -1,6 +1,8 @@
 // How many shells of an open body the middles of its boundary voxels are in: the least that six walks along
 // the axes say, of the near ones if there are any (docs/EXACTNESS.md section 4, "Vote"). A walk crosses what
 // each voxel on its way is crossed by, so one sweep along a row knows what all walks from its voxels say.
+// Then neighbours are asked what they say of each other.
+#include <array>
 #include <cstdint>
 
 #include "compute/gpu/prepare/partition.h"
@@ -12,9 +14,10 @@ namespace palpate {
 void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body) {
   PartitionBuffers& p = body.partition;
   const std::uint64_t voxels = p.grid.boundary_voxels;
-  const VulkanBuffer halves = steps.buffer("crossings of half voxels", voxels, 8);
+  std::array<VulkanBuffer, 3> halves_along;
+  for (VulkanBuffer& halves : halves_along) halves = steps.buffer("crossings of half voxels", voxels, 8);
   const VulkanBuffer link = steps.buffer("rows of bricks", p.grid.mixed_bricks);
-  p.shells = steps.buffer("shells of voxels", voxels);
+  p.shells = steps.buffer("shells of voxels", voxels, 12);
   if (!steps.ok()) return;
   steps.fill(p.shells, INT32_MAX);
   gpu::GridPush push;
@@ -27,6 +30,7 @@ void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& bod
         static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]);
     const VulkanBuffer head = steps.buffer("rows of bricks", rows);
     if (!steps.ok()) return;
+    const VulkanBuffer& halves = halves_along[axis];
     push.axis = axis;
     push.count = pairs.count;
     steps.fill(halves, 0);
@@ -44,6 +48,10 @@ void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& bod
     }
     steps.progress("shells", 0.95);
   }
+  push.count = static_cast<std::uint32_t>(voxels);
+  const auto& [x, y, z] = halves_along;
+  steps.run_items(spirv::shell_doubt, {},
+                  {p.brick_slot, p.mixed_brick, p.bricks, p.boundary_place, x, y, z, p.shells}, push, voxels);
 }
 
 }  // namespace palpate

@@ -102,7 +102,7 @@ struct PressureField::Push {
   Int3 along, against;  ///< n and u
   std::uint32_t depth;
   std::uint32_t weight;   ///< the sample's own, Q24
-  std::uint32_t counted;  ///< of it: 0 in a thin piece, where it pushes nothing
+  std::uint32_t counted;  ///< of it; 0 pushes nothing
   bool sheet;
 };
 
@@ -142,9 +142,11 @@ void PressureField::Extras::for_each(std::uint32_t triangle, std::uint32_t level
 
 PressureField PressureField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
                                   const InsideSearch& in_mockup, const TriangleTree& tool,
-                                  std::span<const std::uint32_t> order, bool tool_has_inside) {
+                                  const InsideSearch& in_tool, std::span<const std::uint32_t> order,
+                                  bool tool_has_inside) {
   PressureField out;
   out.geometry_ = &geometry;
+  out.in_tool_ = &in_tool;
   for (Lane& lane : out.lanes_) {
     lane.mockup_depth = DepthSearch(geometry.mockup, mockup, geometry.sample_spacing);
     lane.tool_depth = DepthSearch(geometry.tool, tool, geometry.sample_spacing);
@@ -313,15 +315,18 @@ void PressureField::add(const Push& push, std::uint32_t static_id, std::uint32_t
 
 void PressureField::push_from_mockup(const LatticePose& pose, std::uint32_t static_id, const Int3& point,
                                      std::uint64_t weight_q30, CarrierSums* carrier, Lane& lane) const {
-  const DepthSearch::Depth below = lane.tool_depth.below(to_tool(pose, point), lane.near_tool);
+  const Int3 in_tool = to_tool(pose, point);
+  const DepthSearch::Depth below = lane.tool_depth.below(in_tool, lane.near_tool);
   lane.near_tool = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
   const bool thin = is_thin(geometry_->mockup, static_id), in_thin = is_thin(geometry_->tool, below.triangle);
   const auto weight = static_cast<std::uint32_t>(weight_q30 >> 6);
+  std::uint32_t pushing = counted(weight, sheet, thin, in_thin);
+  if (!geometry_->tool.closed) pushing = in_tool_->sure(pushing, in_tool);
   add({point - pose.translation, sheet ? against : geometry_->mockup.unit_normal_q30[static_id], against,
-       below.steps, weight, counted(weight, sheet, thin, in_thin), sheet},
+       below.steps, weight, pushing, sheet},
       static_id, below.triangle, carrier, lane);
 }
 
@@ -334,8 +339,10 @@ void PressureField::push_from_tool(const LatticePose& pose, std::uint32_t mobile
   const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
   const bool thin = is_thin(geometry_->tool, mobile), in_thin = is_thin(geometry_->mockup, below.triangle);
   const auto weight = static_cast<std::uint32_t>(weight_q30 >> 6);
+  std::uint32_t pushing = counted(weight, sheet, thin, in_thin);
+  if (!geometry_->mockup.closed) pushing = lane.in_mockup.sure(pushing, point);
   add({point - pose.translation, sheet ? against : -turned(pose, geometry_->tool.unit_normal_q30[mobile]),
-       against, below.steps, weight, counted(weight, sheet, thin, in_thin), sheet},
+       against, below.steps, weight, pushing, sheet},
       below.triangle, mobile, nullptr, lane);
 }
 

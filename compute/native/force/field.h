@@ -22,7 +22,8 @@ class PressureField {
   /// `order`: ids of the tool's triangles by place. What the arguments refer to outlives this.
   static PressureField make(const SceneGeometry& geometry, const TriangleTree& mockup,
                             const InsideSearch& in_mockup, const TriangleTree& tool,
-                            std::span<const std::uint32_t> order, bool tool_has_inside);
+                            const InsideSearch& in_tool, std::span<const std::uint32_t> order,
+                            bool tool_has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -117,6 +118,7 @@ class PressureField {
   static std::uint64_t weight_of(const ExtraSample& extra, const Level& taken);
 
   const SceneGeometry* geometry_ = nullptr;
+  const InsideSearch* in_tool_ = nullptr;
   Extras mockup_extras_, tool_extras_;
   bool tool_has_inside_ = true;
   int lever_shift_ = 0;

@@ -1,7 +1,5 @@
 #include "compute/native/narrow_phase/contact.h"
 
-#include <utility>
-
 namespace palpate {
 
 using namespace gpu;  // names of shaders/shared/frame.h
@@ -18,8 +16,7 @@ std::uint32_t set_of(const MobileResult& m) {
 }  // namespace
 
 std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, const SceneTables& scene,
-                                               std::span<const std::uint32_t> order,
-                                               std::shared_ptr<const OpenInside> known) {
+                                               std::span<const std::uint32_t> order, const OpenBodies& open) {
   std::unique_ptr<NarrowPhase> out(new NarrowPhase);
   out->mockup_ = PartitionLookup(scene.mockup);
   out->tool_ = PartitionLookup(scene.tool);
@@ -27,13 +24,14 @@ std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, co
   out->tool_triangles_ = TriangleTree::make(geometry.tool, [] { return true; });
   out->search_ = scene.search;
   out->in_tool_ = InsideSearch(geometry.tool, out->tool_, out->tool_boxes_);
-  out->in_tool_.use(std::move(known));
+  out->in_tool_.use(open.tool);
   out->sets_ = ContactSets::make(geometry, scene, order, out->in_tool_);
   out->mobiles_.resize(geometry.tool.triangles.size());
   const BodyConstants& tool = scene.constants.tool;
-  out->field_ = PressureField::make(geometry, scene.search->triangles,
-                                    InsideSearch(geometry.mockup, out->mockup_, scene.search->boxes),
-                                    out->tool_triangles_, order, tool.closed != 0 || tool.has_internal != 0);
+  InsideSearch in_mockup(geometry.mockup, out->mockup_, scene.search->boxes);
+  in_mockup.use(open.mockup);
+  out->field_ = PressureField::make(geometry, scene.search->triangles, in_mockup, out->tool_triangles_,
+                                    out->in_tool_, order, tool.closed != 0 || tool.has_internal != 0);
   return out;
 }
 

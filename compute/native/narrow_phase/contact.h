@@ -22,10 +22,9 @@ namespace palpate {
 /// when a contact is larger than all before.
 class NarrowPhase {
  public:
-  /// `known` of a tool that is not closed; may be null.
+  /// `open`: what is known of bodies that are not closed.
   static std::unique_ptr<NarrowPhase> make(const SceneGeometry& geometry, const SceneTables& scene,
-                                           std::span<const std::uint32_t> order,
-                                           std::shared_ptr<const OpenInside> known);
+                                           std::span<const std::uint32_t> order, const OpenBodies& open);
 
   /// Fills sets (where `out.lists`), pairs, contact and the field of an `out` that is clear. `helper` may be
   /// null. `stage(name, looks)` is called at the end of each stage, as Contacts::StageTime has it.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cstdlib>
 #include <cstring>
@@ -20,8 +19,6 @@ using namespace gpu;  // names of shaders/shared/scene.h
 
 namespace {
 
-constexpr int kNearWalk = 8;  // voxels (docs/EXACTNESS.md section 4)
-
 bool bounds_solid(const LatticeMesh& mesh, std::uint32_t id) {
   return (mesh.flags[id] & (kTriangleCollapsed | kTriangleSheet)) == 0;
 }
@@ -37,7 +34,6 @@ InsideSearch::InsideSearch(const LatticeMesh& mesh, const PartitionLookup& parti
       way_(mesh.closed ? partition.grid().boundary_voxels : 0) {
   constexpr std::size_t kMostKnown = std::size_t{1} << 14;  // 256 KiB (chosen)
   windings_.resize(kMostKnown);
-  if (!mesh.closed) middle_.assign(partition.grid().boundary_voxels, kUnknown);
 }
 
 bool InsideSearch::inside(const Int3& point) {
@@ -59,23 +55,22 @@ void InsideSearch::inside(std::span<const Int3> points, std::span<std::uint8_t> 
       const PartitionLookup::Voxel at = partition_->at(voxel);
       places[i] = {voxel, at.boundary};
       answers[i] = at.kind == kVoxelInternal ? 1 : 0;
-      if (at.boundary != kNoVoxel && known_) known_->cells.prefetch(at.boundary);
+      if (at.boundary != kNoVoxel) known_->cells.prefetch(at.boundary);
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (places[i].boundary == kNoVoxel) continue;
-      if (known_)
-        if (const std::optional<bool> known =
-                known_->cells.find(points[i], places[i].voxel, places[i].boundary)) {
-          answers[i] = *known ? 1 : 0;
-          places[i].boundary = kNoVoxel;
-          continue;
-        }
-      if (known_) known_->crossings.prefetch(places[i].boundary);
-      __builtin_prefetch(&middle_[places[i].boundary]);
+      if (const std::optional<bool> known =
+              known_->cells.find(points[i], places[i].voxel, places[i].boundary)) {
+        answers[i] = *known ? 1 : 0;
+        places[i].boundary = kNoVoxel;
+        continue;
+      }
+      known_->crossings.prefetch(places[i].boundary);
+      known_->shells->prefetch(places[i].boundary);
     }
     for (std::size_t i = 0; i < points.size(); ++i)
       if (places[i].boundary != kNoVoxel)
-        answers[i] = inside_open(points[i], places[i].voxel, places[i].boundary) ? 1 : 0;
+        answers[i] = shells_at(points[i], places[i].voxel, places[i].boundary) > 0 ? 1 : 0;
   });
 }
 
@@ -84,45 +79,71 @@ bool InsideSearch::inside_boundary(const Int3& point, const Int3& voxel, std::ui
   if (mesh_->closed) {
     std::uint8_t& way = way_[boundary];
     if (way == 0) way = shortest_way(voxel);
-    const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1, true);
+    const Walk out = walk(point, voxel, (way - 1) >> 1, ((way - 1) & 1) != 0 ? 1 : -1);
     return out.net + (out.kind == kVoxelInternal ? winding_of(out.voxel) : 0) != 0;
   }
-  if (known_)
-    if (const std::optional<bool> known = known_->cells.find(point, voxel, boundary)) return *known;
-  return inside_open(point, voxel, boundary);
+  if (const std::optional<bool> known = known_->cells.find(point, voxel, boundary)) return *known;
+  return shells_at(point, voxel, boundary) > 0;
 }
 
-bool InsideSearch::inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary) {
-  const std::atomic_ref<std::int16_t> known(middle_[boundary]);  // whoever comes first: all find the same
-  std::int16_t winding = known.load(std::memory_order_relaxed);
-  if (winding == kUnknown) {
-    winding = winding_by_walks(voxel);
-    known.store(winding, std::memory_order_relaxed);
-  }
-  const Int3 middle =
-      partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
-  if (known_ && !known_->crossings.empty())
+int InsideSearch::shells_at(const Int3& point, const Int3& voxel, std::uint32_t boundary) const {
+  const GridConstants& grid = partition_->grid();
+  const Int3 middle = grid.origin + grid.size * voxel + Int3(grid.size / 2);
+  const int shells = known_->shells->middle(boundary);
+  if (!known_->crossings.empty())
     if (const MiddleCrossings::Net net = known_->crossings.crossed(point - middle, boundary); !net.unsure)
-      return winding + net.crossed > 0;
-  return winding + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary)) > 0;
+      return shells + net.crossed;
+  return shells + (point == middle ? 0 : crossed_within(point, middle, voxel, boundary));
 }
 
-/// Of a V_bnd voxel's middle: the least that its walks say, the near ones if there are any.
-std::int16_t InsideSearch::winding_by_walks(const Int3& voxel) const {
-  const Int3 middle =
-      partition_->grid().origin + partition_->grid().size * voxel + Int3(partition_->grid().size / 2);
-  std::optional<int> of_near, of_all;
-  const auto lower = [](std::optional<int>& least, int said) {
-    least = std::min(least.value_or(said), said);
-  };
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int way : {1, -1}) {
-      const Walk out = walk(middle, voxel, axis, way, false);
-      const int said = out.net + (out.kind == kVoxelInternal ? 1 : 0);
-      lower(of_all, said);
-      if (std::abs(out.voxel[axis] - voxel[axis]) <= kNearWalk) lower(of_near, said);
+std::uint32_t InsideSearch::sure(std::uint32_t weight, const Int3& point) const {
+  const OpenShells& shells = *known_->shells;
+  if (shells.agree()) return weight;
+  const GridConstants& grid = partition_->grid();
+  const Int3 voxel = partition_->voxel_of(point), in = point - (grid.origin + grid.size * voxel);
+  const std::uint32_t boundary = partition_->at(voxel).boundary;
+  std::uint32_t less = 0;
+  if (boundary != kNoVoxel) {
+    less = shells.less(boundary);
+    if (less == 0 || shells_at(point, voxel, boundary) != 1) return weight;
+  }
+  // Within half a voxel are only neighbours on the near side of the middle, along each axis.
+  Int3 side, way;
+  for (int k = 0; k < 3; ++k) {
+    side[k] = 2 * in[k] < grid.size ? -1 : 1;
+    way[k] = side[k] < 0 ? in[k] : grid.size - in[k];
+  }
+  std::int32_t nearest = grid.size;  // twice the way to the nearest that says less
+  for (int axes = 1; axes < 8; ++axes) {
+    const Int3 along(axes & 1, axes >> 1 & 1, axes >> 2);
+    const Int3 to = along * side, ways = along * way;
+    const std::int32_t twice = 2 * std::max({ways.x, ways.y, ways.z});
+    if (twice >= nearest) continue;
+    const auto number = static_cast<unsigned>(13 + to.x + 3 * to.y + 9 * to.z);
+    bool says_less = (less >> number & 1) != 0;
+    if (boundary == kNoVoxel) {
+      const std::uint32_t there = partition_->at(voxel + to).boundary;
+      says_less = there != kNoVoxel && (shells.more(there) >> (26 - number) & 1) != 0;
     }
-  return static_cast<std::int16_t>(std::clamp(of_near ? *of_near : *of_all, -30000, 30000));
+    if (says_less) nearest = twice;
+  }
+  if (nearest == grid.size) return weight;
+  const std::uint64_t part = std::uint64_t{static_cast<std::uint32_t>(nearest)} *
+                             ((1u << 31) / static_cast<std::uint32_t>(grid.size));
+  return static_cast<std::uint32_t>((weight * part) >> 31);
+}
+
+OpenShells::Halves InsideSearch::halves_of(const Int3& voxel, std::uint32_t boundary) const {
+  const GridConstants& grid = partition_->grid();
+  const Int3 low = grid.origin + grid.size * voxel, middle = low + Int3(grid.size / 2);
+  OpenShells::Halves out{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int up : {1, 0}) {
+      Int3 face = middle;
+      face[axis] = low[axis] + up * grid.size;
+      out[static_cast<std::size_t>(2 * axis + 1 - up)] = crossed(middle, face, axis, voxel, boundary, false);
+    }
+  return out;
 }
 
 /// Calls take(id) for what a V_bnd voxel lists and whose box there meets a box of parts. Sixteen at a time:
@@ -178,8 +199,7 @@ int InsideSearch::crossed_within(const Int3& from, const Int3& to, const Int3& v
 }
 
 /// Along an axis to the first voxel that is not V_bnd. `sheets`: their triangles count, too.
-InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int axis, int way,
-                                      bool sheets) const {
+InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int axis, int way) const {
   const GridConstants& grid = partition_->grid();
   Walk out{0, voxel, kVoxelBoundary};
   Int3 from = point;
@@ -187,7 +207,7 @@ InsideSearch::Walk InsideSearch::walk(const Int3& point, const Int3& voxel, int 
   do {
     Int3 to = from;
     to[axis] = grid.origin[axis] + grid.size * (out.voxel[axis] + (way > 0 ? 1 : 0));
-    if (from != to) out.net += crossed(from, to, axis, out.voxel, here.boundary, sheets);
+    if (from != to) out.net += crossed(from, to, axis, out.voxel, here.boundary, true);
     from = to;
     out.voxel[axis] += way;
     here = partition_->at(out.voxel);

@@ -13,9 +13,9 @@
 namespace palpate {
 
 /// Whether a lattice point lies inside a body that does not move, in the body's own frame (docs/EXACTNESS.md
-/// section 4): by walks along axes to voxels that list nothing, of a body that is not closed once a voxel,
-/// and where more of it is known (OpenInside) not even that. Arguments outlive this. One thread, but of a
-/// body that is not closed any number; only the constructor allocates.
+/// section 4): of a closed one by walks along axes to voxels that list nothing, of any other by what is known
+/// of its voxels (OpenInside). Arguments outlive this. One thread, but of a body that is not closed any
+/// number; only the constructor allocates.
 class InsideSearch {
  public:
   InsideSearch() = default;
@@ -29,12 +29,17 @@ class InsideSearch {
   /// all of them read is called for before the first is answered, for it lies far apart. At most kMostPoints.
   void inside(std::span<const Int3> points, std::span<std::uint8_t> answers);
   static constexpr std::size_t kMostPoints = 256;
-  /// For a body that is not closed and is asked much. `known` is of the same body and partition.
+  /// Before a body that is not closed is asked anything. `known` is of the same body and partition.
   void use(std::shared_ptr<const OpenInside> known) { known_ = std::move(known); }
   /// But for what is shared.
-  std::uint64_t bytes() const { return bytes_of(way_) + bytes_of(middle_) + bytes_of(windings_); }
-  /// Of a point in a V_bnd voxel of a body that is not closed, of number `boundary`; without cells.
-  bool inside_open(const Int3& point, const Int3& voxel, std::uint32_t boundary);
+  std::uint64_t bytes() const { return bytes_of(way_) + bytes_of(windings_); }
+  /// How many shells a point in a V_bnd voxel, of number `boundary`, of a body that is not closed is in.
+  int shells_at(const Int3& point, const Int3& voxel, std::uint32_t boundary) const;
+  /// What is left of the weight of a sample at a point that lies inside a body that is not closed, where
+  /// neighbouring voxels may say otherwise (section 4, "Doubt").
+  std::uint32_t sure(std::uint32_t weight, const Int3& point) const;
+  /// What OpenShells asks.
+  OpenShells::Halves halves_of(const Int3& voxel, std::uint32_t boundary) const;
 
  private:
   struct Walk {
@@ -43,14 +48,13 @@ class InsideSearch {
     std::uint32_t kind;  ///< of that voxel
   };
   bool inside_boundary(const Int3& point, const Int3& voxel, std::uint32_t boundary);
-  Walk walk(const Int3& point, const Int3& voxel, int axis, int way, bool sheets) const;
+  Walk walk(const Int3& point, const Int3& voxel, int axis, int way) const;
   int crossed(const Int3& from, const Int3& to, int axis, const Int3& voxel, std::uint32_t boundary,
               bool sheets) const;
   int crossed_within(const Int3& from, const Int3& to, const Int3& voxel, std::uint32_t boundary) const;
   using Parts = Int3;  ///< of a voxel, from its low corner on: kVoxelParts a side
   template <class Take>
   void for_listed(std::uint32_t boundary, const Parts& low, const Parts& high, Take&& take) const;
-  std::int16_t winding_by_walks(const Int3& voxel) const;
   std::uint8_t shortest_way(const Int3& voxel) const;
   int winding_of(const Int3& voxel);
 
@@ -58,12 +62,9 @@ class InsideSearch {
   const PartitionLookup* partition_ = nullptr;
   std::span<const std::uint8_t> boxes_;
   double per_part_ = 0;                      ///< parts of a voxel a step
-  std::shared_ptr<const OpenInside> known_;  ///< may be null
+  std::shared_ptr<const OpenInside> known_;  ///< of a body that is not closed
   std::vector<std::uint8_t> way_;  ///< by V_bnd voxel of a closed body: the shortest way out of such voxels,
                                    ///< axis · 2 + up + 1; 0: not known yet
-  static constexpr std::int16_t kUnknown = INT16_MIN;
-  std::vector<std::int16_t>
-      middle_;  ///< by V_bnd voxel of a body that is not closed: how deep in its middle is, in shells
   struct Known {
     std::uint64_t voxel;  ///< its number + 1; 0: nothing
     int winding;

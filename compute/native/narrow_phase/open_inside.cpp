@@ -1,24 +1,37 @@
 #include "compute/native/narrow_phase/open_inside.h"
 
+#include <utility>
 #include <vector>
 
 #include "compute/native/narrow_phase/inside_search.h"
 #include "compute/scene/brick_bits.h"
-#include "compute/scene/search_tables.h"
 #include "compute/scene/tool_solid.h"
 
 namespace palpate {
 
-std::shared_ptr<const OpenInside> OpenInside::make(const LatticeMesh& mesh, const PartitionView& view) {
-  auto out = std::make_shared<OpenInside>();
-  out->crossings = MiddleCrossings(mesh, view);
+std::shared_ptr<const OpenShells> OpenInside::count_shells(const LatticeMesh& mesh, const PartitionView& view,
+                                                           std::span<const std::uint8_t> boxes,
+                                                           const OpenShells::GoOn& go_on) {
   const PartitionLookup partition(view);
-  const std::vector<std::uint8_t> boxes = SearchTables::boxes_of(mesh, view);
+  const InsideSearch search(mesh, partition, boxes);
+  auto made = OpenShells::make(
+      view, [&](const Int3& voxel, std::uint32_t boundary) { return search.halves_of(voxel, boundary); },
+      go_on);
+  return made ? std::make_shared<const OpenShells>(std::move(*made)) : nullptr;
+}
+
+std::shared_ptr<const OpenInside> OpenInside::make(const LatticeMesh& mesh, const PartitionView& view,
+                                                   std::span<const std::uint8_t> boxes,
+                                                   std::shared_ptr<const OpenShells> shells) {
+  auto out = std::make_shared<OpenInside>();
+  out->shells = std::move(shells);
+  const PartitionLookup partition(view);
   InsideSearch search(mesh, partition, boxes);
+  out->crossings = MiddleCrossings(mesh, view);
   search.use(out);  // it has no cells yet
   out->cells =
       InsideCells(mesh, view, boxes, [&](const Int3& point, const Int3& voxel, std::uint32_t boundary) {
-        return search.inside_open(point, voxel, boundary);
+        return search.shells_at(point, voxel, boundary) > 0;
       });
   BrickBits may, all;
   if (!out->cells.spread(view, may, all)) return out;

@@ -42,6 +42,14 @@ std::optional<Scene> find_scene(DiskCache& cache, const ContentKey& key) {
   auto tables = std::make_shared<SearchTables>();
   archive_tables(reader, *tables);
   scene.search = std::move(tables);
+  for (auto* shells : {&scene.mockup_shells, &scene.tool_shells}) {
+    bool counted = false;
+    reader(counted);
+    if (!counted) continue;
+    auto made = std::make_shared<OpenShells>();
+    OpenShells::archive(reader, *made);
+    *shells = std::move(made);
+  }
   if (reader.complete()) return scene;
   cache.drop(kKind, key, "does not hold what it should");
   return std::nullopt;
@@ -53,6 +61,10 @@ void keep_scene(DiskCache& cache, const ContentKey& key, const Scene& scene, dou
   archive_scene(writer, scene);
   archive_samples(writer, scene.samples ? *scene.samples : kNone);
   archive_tables(writer, *scene.search);
+  for (const auto* shells : {&scene.mockup_shells, &scene.tool_shells}) {
+    writer(*shells != nullptr);
+    if (*shells) OpenShells::archive(writer, **shells);
+  }
   cache.keep(kKind, key, writer.pieces(), seconds);
 }
 

@@ -46,14 +46,21 @@ SceneTables Scene::tables() const {
   return out;
 }
 
-void Scene::know(const LatticeMesh& mesh) {
-  if (!mesh.closed && tool.has_internal) open_tool = OpenInside::make(mesh, tool);
+void Scene::know(const SceneGeometry& geometry) {
+  if (mockup_shells) {
+    auto made = std::make_shared<OpenInside>();
+    made->shells = mockup_shells;
+    open.mockup = std::move(made);
+  }
+  if (tool_shells)
+    open.tool =
+        OpenInside::make(geometry.tool, tool, SearchTables::boxes_of(geometry.tool, tool), tool_shells);
 }
 
 std::uint64_t Scene::bytes() const {
   return mockup.bytes() + tool.bytes() + fine.bytes() +
          4 * (std::uint64_t{fine_exit.size()} + tool_near.size()) + (samples ? samples->bytes() : 0) +
-         (search ? search->bytes() : 0) + (open_tool ? open_tool->bytes() : 0);
+         (search ? search->bytes() : 0) + open.bytes();
 }
 
 Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
@@ -86,16 +93,24 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
   out.tool_near = near_tool(out.finest(), out.tool.grid.size);
   if (geometry.tool.closed) out.fine_exit = ways_out(out.finest());
 
-  out.know(geometry.tool);
-
   if (!at("search", 0.4)) return cancelled();
   out.search = SearchTables::make(geometry, out.mockup, go_on);
   if (!out.search) return cancelled();
+  if (!geometry.mockup.closed) {
+    out.mockup_shells = OpenInside::count_shells(geometry.mockup, out.mockup, out.search->boxes, go_on);
+    if (!out.mockup_shells) return cancelled();
+  }
+  if (!geometry.tool.closed && out.tool.has_internal) {
+    out.tool_shells = OpenInside::count_shells(geometry.tool, out.tool,
+                                               SearchTables::boxes_of(geometry.tool, out.tool), go_on);
+    if (!out.tool_shells) return cancelled();
+  }
   if (geometry.tool.closed || out.tool.has_internal)
     if (!make_samples(geometry, progress, out)) return cancelled();
 
   out.constants = scene_constants(geometry, plan, {out.mockup.grid, out.mockup.has_internal},
                                   {out.tool.grid, out.tool.has_internal}, out.finest().grid);
+  out.know(geometry);
   if (!at("prepared", 1)) return cancelled();
   return out;
 }

@@ -19,14 +19,16 @@ struct Scene {
   std::shared_ptr<const VoxelSamples> samples;      ///< may be null: frames work them out
   std::shared_ptr<const SearchTables> search;       ///< never null
 
-  std::shared_ptr<const OpenInside> open_tool;  ///< null: the tool is closed, or has no inside
+  std::shared_ptr<const OpenShells> mockup_shells, tool_shells;  ///< null: the body is closed, or nothing
+                                                                 ///< can lie inside it
+  OpenBodies open;                                               ///< what no cache keeps
 
   const Partition& finest() const { return fine.brick_slot.empty() ? tool : fine; }
   /// Valid as long as this neither moves nor changes.
   SceneTables tables() const;
   std::uint64_t bytes() const;
-  /// Fills open_tool, which no cache keeps.
-  void know(const LatticeMesh& mesh);
+  /// Fills `open`. Last of all.
+  void know(const SceneGeometry& geometry);
 };
 
 /// Makes all of it, on all cores. Errors: a grid that is too large (kBadValue), cancelled.
