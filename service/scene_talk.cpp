@@ -141,9 +141,14 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
     return own;
   };
   const std::string vote = "what is inside it is a vote (docs/EXACTNESS.md, sections 2 and 4)";
-  if (!geometry.mockup.closed && backend.has_internal_voxels())
+  if (!geometry.mockup.closed)
     out.bodies.push_back(
-        "the mock-up is not closed: " + vote +
+        "the mock-up is not closed" +
+        std::string(backend.has_internal_voxels()
+                        ? ""
+                        : ", and no voxel of it is wholly inside, so that it hardly pushes the tool's own "
+                          "surface out (\"sheet_thickness\" in the scene gives it walls)") +
+        ": " + vote +
         doubt(geometry.tool, {&contacts.cmt, &contacts.imt}, geometry.mockup, to_world, "tool"));
   if (!geometry.tool.closed && !pose->beyond_lattice)
     out.bodies.push_back(

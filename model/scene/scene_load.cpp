@@ -101,23 +101,26 @@ bool all_are_places(const Mesh& mesh) {
          });
 }
 
-Mesh walled(const Mesh& mesh, const MeshSource& source, std::vector<std::string>& warnings) {
+Mesh walled(const Mesh& mesh, const MeshSource& source, const char* body,
+            std::vector<std::string>& warnings) {
   Thickened thick = thicken(mesh, source.sheet_thickness_m);
   if (thick.walls == 0) {
-    warnings.push_back(fmt::format("{}: no piece of it is open, so \"sheet_thickness\" changes nothing",
-                                   source_name(source)));
+    warnings.push_back(fmt::format("{} {}: no piece of it is open, so \"sheet_thickness\" changes nothing",
+                                   body, source_name(source)));
     return mesh;
   }
   warnings.push_back(fmt::format(
-      "{}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} triangles{}",
-      source_name(source), thick.walls, mesh.triangles.size(), 1e3 * source.sheet_thickness_m,
+      "{} {}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} triangles{}",
+      body, source_name(source), thick.walls, mesh.triangles.size(), 1e3 * source.sheet_thickness_m,
       thick.mesh.triangles.size(),
       thick.copies == 0 ? "" : fmt::format(", without {} that were there twice", thick.copies)));
   return std::move(thick.mesh);
 }
 
-Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation,
-                     const ImportProgress& progress, std::vector<std::string>& warnings) {
+/// `body`: mock-up or tool, for sentences.
+Result<Mesh> mesh_of(const MeshSource& source, const char* body, Files& files,
+                     const Tessellation& tessellation, const ImportProgress& progress,
+                     std::vector<std::string>& warnings) {
   Result<Mesh> mesh =
       source.file.empty() ? generate(source) : files.read(source, tessellation, progress, warnings);
   if (!mesh) return mesh;
@@ -125,7 +128,8 @@ Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation&
   if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
   if (mesh && mesh->triangles.empty())
     return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
-  if (mesh && source.sheet_thickness_m > 0 && all_are_places(*mesh)) mesh = walled(*mesh, source, warnings);
+  if (mesh && source.sheet_thickness_m > 0 && all_are_places(*mesh))
+    mesh = walled(*mesh, source, body, warnings);
   return mesh;
 }
 
@@ -242,7 +246,7 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   if (!tell(progress, "import", 0)) return cancelled;
   Tessellation tessellation{stated_deflection(scene.response), scene.response.tessellation_angle_deg,
                             scene.tool.source.part};
-  auto tool = mesh_of(scene.tool.source, files, tessellation, of_body(0), scene.warnings);
+  auto tool = mesh_of(scene.tool.source, "tool", files, tessellation, of_body(0), scene.warnings);
   if (!tool) return tool.error();
   meshes.tool = std::move(*tool);
   if (tessellation.deflection_m == 0) tessellation.deflection_m = extent(meshes.tool) / kDeflectionsPerSide;
@@ -251,7 +255,7 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
     const auto body_progress = of_body(i + 1);
     if (!body_progress("import", 0)) return cancelled;
     const StaticBody& body = scene.statics[i];
-    const auto mesh = mesh_of(body.source, files, tessellation, body_progress, scene.warnings);
+    const auto mesh = mesh_of(body.source, "mock-up", files, tessellation, body_progress, scene.warnings);
     if (!mesh) return mesh.error();
     place(*mesh, body.placement, prefix_of(body.source), prefixes[i], meshes.mockup);
   }

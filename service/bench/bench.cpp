@@ -226,7 +226,7 @@ class Benches {
         "Each method is judged against its own truth: a closed form, else itself with samples a 16th of a "
         "voxel apart (refined), or with the mock-up cut finer than in\n"
         "the sweep (paper). Without --poses a scene is measured at the poses of a hand in virtual time and "
-        "at its path's, deeper than a hand gets; SCENE=POSES.csv\n"
+        "at its path's, deeper than a hand gets, so it needs a path; SCENE=POSES.csv\n"
         "gives a scene poses of its own. Poses and rounds are 12 and 1 unless said otherwise. The report "
         "begins with what the figures say in sentences.");
     error->callback([*this, error]() mutable {

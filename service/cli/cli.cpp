@@ -93,7 +93,8 @@ CLI::Option* add_backend(CLI::App& app, SceneOptions& options) {
           "--backend", options.backend,
           "the engine that answers: gpu, everything in shaders; cpu, native code on this processor; "
           "ref, the reference; auto: where there is a GPU, the quicker one of gpu and cpu at a few poses "
-          "near the start, else cpu, with a sentence on standard error (auto)")
+          "near the start, else cpu, with a sentence on standard error; an engine that can't take the scene "
+          "(cpu knows no profile paper) is replaced by one that can, likewise (auto)")
       ->check(one_of({"auto", "gpu", "cpu", "ref"}))
       ->type_name("auto|gpu|cpu|ref");
 }

@@ -5,8 +5,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -31,9 +31,13 @@ Example:
 Json json_of(const CompareOptions& options, const RunDifference& difference) {
   Json quantities = Json::array(), facts = Json::array();
   for (const TickDifference& q : difference.quantities) {
-    Json one{{"quantity", q.name},   {"unit", q.unit},
-             {"largest", q.largest}, {"largest_at_s", q.largest_at_s},
-             {"rms", q.rms},         {"first_at_s", nullptr}};
+    const auto of_common = [&](double value) { return difference.common > 0 ? Json(value) : Json(nullptr); };
+    Json one{{"quantity", q.name},
+             {"unit", q.unit},
+             {"largest", of_common(q.largest)},
+             {"largest_at_s", of_common(q.largest_at_s)},
+             {"rms", of_common(q.rms)},
+             {"first_at_s", nullptr}};
     if (q.first_at_s) one["first_at_s"] = *q.first_at_s;
     quantities.push_back(std::move(one));
   }
@@ -62,7 +66,7 @@ void print(const RunDifference& difference) {
       difference.only_first, difference.only_second, difference.contact_differs);
   if (const std::string stopped = stopped_text(difference); !stopped.empty()) fmt::print("{}\n", stopped);
   for (const TickDifference& q : difference.quantities)
-    fmt::print("  {:<18} {}\n", q.name, difference_text(q));
+    fmt::print("  {:<18} {}\n", q.name, difference_text(difference, q));
   if (difference.facts.empty()) {
     fmt::print("no figure differs\n");
     return;
@@ -77,7 +81,13 @@ void print(const RunDifference& difference) {
                fact.ratio ? fmt::format("  × {:.4g}", *fact.ratio) : "");
 }
 
+constexpr std::array kCompareFiles{"compare.json", "compare.html"};
+
 Result<void> compare_command(const CompareOptions& options) {
+  if (!options.out.empty())
+    if (auto done = check_output_folder(options.out, kCompareFiles, "a comparison's", options.overwrite);
+        !done)
+      return done;
   const auto first = read_run(options.first);
   if (!first) return first.error();
   const auto second = read_run(options.second);
@@ -111,9 +121,9 @@ void add_compare_command(CLI::App& app, CompareOptions& options, Result<void>& o
   compare->add_option("first", options.first, "folder that a run left")->required()->type_name("RUN");
   compare->add_option("second", options.second, "another")->required()->type_name("RUN");
   compare->add_flag("--json", options.json, "one JSON object");
-  compare->add_option("--out", options.out, "directory for compare.json and compare.html")
-      ->check(CLI::Validator([](const std::string& folder) { return cannot_write_to(folder); }, ""))
-      ->type_name("DIR");
+  compare->add_option("--out", options.out, "directory for compare.json and compare.html")->type_name("DIR");
+  compare->add_flag("--overwrite", options.overwrite,
+                    "replace the files of a comparison that are in --out already");
   compare->footer(kCompareFooter);
   compare->callback([&] { outcome = compare_command(options); });
 }

@@ -12,7 +12,8 @@ namespace palpate {
 struct CompareOptions {
   std::string first, second;  ///< folders of runs
   bool json = false;
-  std::string out;  ///< empty: none
+  std::string out;         ///< empty: none
+  bool overwrite = false;  ///< the files of another comparison that `out` has already
 };
 
 /// Adds `compare`; all arguments outlive the parsing.

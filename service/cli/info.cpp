@@ -307,6 +307,7 @@ void print_parts(const std::vector<PartLine>& lines) {
 
 struct SceneInfo {
   std::string file, prepared;
+  std::vector<std::string> warnings;  ///< of reading it
   SceneTalk talk;
 };
 
@@ -316,7 +317,7 @@ Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& lim
   SceneOptions options;
   options.scene = path;
   options.import = limits;
-  SceneInfo info{.file = path, .prepared = {}, .talk = {}};
+  SceneInfo info{.file = path, .prepared = {}, .warnings = {}, .talk = {}};
   const PrepareWatch watch{
       .note =
           [&](const std::string& sentence) { info.prepared = sentence; },  // the last one says what was read
@@ -327,6 +328,7 @@ Result<SceneInfo> inspect_scene(const std::string& path, const ImportLimits& lim
       .folder = {}};
   Result<std::unique_ptr<HostedScene>> prepared = prepare_scene(options, Purpose::kQuery, parts, watch);
   if (!prepared) return prepared.error();
+  info.warnings = (*prepared)->loaded.scene.warnings;
   Result<SceneTalk> talk = scene_talk((*prepared)->loaded, *(*prepared)->backend);
   if (!talk) return talk.error();
   info.talk = std::move(*talk);
@@ -373,7 +375,8 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
       out["scenes"].push_back({{"file", scene.file},
                                {"free", scene.talk.free},
                                {"start", scene.talk.start},
-                               {"bodies", scene.talk.bodies}});
+                               {"bodies", scene.talk.bodies},
+                               {"warnings", scene.warnings}});
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return failed ? Result<void>(*failed) : Result<void>();
   }
@@ -387,7 +390,8 @@ Result<void> info_command(const InfoOptions& options, const Parts& parts) {
     fmt::print("{}\n  {:<12} {}\n", scene.file, "read", scene.prepared);
     if (scene.talk.free) fmt::print("  {:<12} free: nothing touches the tool\n", "start");
     for (const std::string& sentence : scene.talk.start) fmt::print("  {:<12} {}\n", "start", sentence);
-    for (const std::string& sentence : scene.talk.bodies) fmt::print("  {:<12} {}\n", "note", sentence);
+    for (const auto* sentences : {&scene.talk.bodies, &scene.warnings})
+      for (const std::string& sentence : *sentences) fmt::print("  {:<12} {}\n", "note", sentence);
   }
   return failed ? Result<void>(*failed) : Result<void>();
 }

@@ -225,7 +225,7 @@ void add_path_command(CLI::App& app, PathOptions& options, const Parts& parts, R
   };
   metres(
       "--tolerance", [&options](double value) { options.tolerance_m = value; },
-      "a contact no deeper than this does not count, m");
+      "a contact no deeper than this does not count, m; rounded down to steps of the lattice");
   metres(
       "--within", [&options](double value) { options.within_m = value; },
       "measure no clearance further than this, m");

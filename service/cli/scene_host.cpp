@@ -9,6 +9,7 @@
 #include "service/cli/numbers.h"
 #include "service/engine_times.h"
 #include "service/loop/steady_backend.h"
+#include "service/queries/first_contact.h"
 
 namespace palpate {
 namespace {
@@ -224,7 +225,14 @@ Result<std::unique_ptr<HostedScene>> prepare_for_verdicts(SceneOptions options, 
     console.note("the profile is paper; whether and how deep the tool touches is asked as in refined");
   options.profile = Profile::kRefined;
   options.all_samples = tolerance_m > 0;
-  return prepare_scene(options, Purpose::kQuery, parts, console);
+  auto prepared = prepare_scene(options, Purpose::kQuery, parts, console);
+  if (!prepared || tolerance_m == 0) return prepared;
+  const SceneGeometry& geometry = (*prepared)->loaded.geometry;
+  if (TouchRule::of(geometry, tolerance_m).tolerance == 0)
+    return bad_value(fmt::format(
+        "--tolerance {:g} is less than a step of the scene's lattice, {:.3g} m; say 0 or more than that",
+        tolerance_m, geometry.lattice.step_m));
+  return prepared;
 }
 
 Result<std::unique_ptr<HostedScene>> prepare_scene(const SceneOptions& options, Purpose purpose,

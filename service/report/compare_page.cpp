@@ -55,7 +55,8 @@ constexpr const char* kScript = R"js('use strict';
 
 }  // namespace
 
-std::string difference_text(const TickDifference& q) {
+std::string difference_text(const RunDifference& difference, const TickDifference& q) {
+  if (difference.common == 0) return "nothing to compare";
   if (!q.first_at_s) return "the same";
   return fmt::format("{:.3g} {} at {:.3f} s at most, root mean square {:.3g} {}, from {:.3f} s on", q.largest,
                      q.unit, q.largest_at_s, q.rms, q.unit, *q.first_at_s);
@@ -106,7 +107,7 @@ std::string compare_page(const RecordedRun& first, const RecordedRun& second,
   for (const TickDifference& q : difference.quantities) {
     const bool sized = q.first_peak > 0 || q.second_peak > 0;
     body += row(q.name, sized ? fmt::format("{:.4g} {}", q.first_peak, q.unit) : "",
-                sized ? fmt::format("{:.4g} {}", q.second_peak, q.unit) : "", difference_text(q));
+                sized ? fmt::format("{:.4g} {}", q.second_peak, q.unit) : "", difference_text(difference, q));
   }
   body += "</table></div>";
   for (const bool provenance : {true, false}) {

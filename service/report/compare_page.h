@@ -11,6 +11,6 @@ std::string compare_page(const RecordedRun& first, const RecordedRun& second,
                          const RunDifference& difference);
 
 /// "0.012 N at 3.214 s, root mean square 0.001 N, from 1.2 s on"; "the same".
-std::string difference_text(const TickDifference& quantity);
+std::string difference_text(const RunDifference& difference, const TickDifference& quantity);
 
 }  // namespace palpate

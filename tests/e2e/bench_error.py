@@ -184,7 +184,11 @@ def test_a_scene_is_judged_against_a_converged_run():
     refused = palpate(
         'bench', 'error', scene, '--poses', far, '--scenes-only', '--rounds', '1', '--out', folder / 'none'
     )
-    expect(refused.code == 3 and 'none of the 1 poses has a contact that pushes' in refused.err, refused)
+    expect(refused.code == 3, refused)
+    expect(refused.err.count('none of the 1 poses has a contact that pushes') == 1, 'said once')
+    nothing = palpate('bench', 'error', '--scenes-only', '--out', folder / 'none')
+    expect(nothing.code == 2 and '--scenes-only goes with a scene' in nothing.err, nothing)
+    expect(not (folder / 'none' / 'results.csv').exists(), 'a table of nothing')
 
 
 main(globals())

@@ -71,11 +71,28 @@ def test_a_run_that_was_stopped_is_said_to_be():
     for run in (b, a):
         summary = json.loads((run / 'summary.json').read_text())
         (run / 'summary.json').write_text(json.dumps(summary | {'stopped': True}))
-        told = json.loads(palpate('compare', a, b, '--json', '--out', folder / 'out').out)
+        told = json.loads(palpate('compare', a, b, '--json', '--out', folder / 'out', '--overwrite').out)
         expect(told['stopped'] == {'first': run == a, 'second': True}, told['stopped'])
         sentence = ('both runs were' if run == a else 'the second run was') + ' stopped before'
         expect(sentence in palpate('compare', a, b).out, sentence)
         expect(sentence in (folder / 'out' / 'compare.html').read_text(), 'and on the page')
+
+
+def test_runs_without_a_common_tick_are_not_called_the_same():
+    folder = Folder()
+    a = runs(folder)[0]
+    shutil.copytree(a, folder / 'empty')
+    (folder / 'empty' / 'trace.csv').write_text((a / 'trace.csv').read_text().split('\n')[0] + '\n')
+    told = json.loads(palpate('compare', a, folder / 'empty', '--json', '--out', folder / 'out').out)
+    expect(not told['same_trace'] and told['ticks']['common'] == 0, told['ticks'])
+    for one in told['quantities']:
+        expect([one[key] for key in ('largest', 'largest_at_s', 'rms', 'first_at_s')] == [None] * 4, one)
+    text = palpate('compare', a, folder / 'empty').out
+    expect(text.count('nothing to compare') == 6 and 'the same' not in text, text)
+    expect((folder / 'out' / 'compare.html').read_text().count('nothing to compare') == 6, 'and on the page')
+    before = (folder / 'out' / 'compare.json').read_bytes()
+    expect_refused(palpate('compare', a, a, '--out', folder / 'out'), 3, 'compare.json', '--overwrite')
+    expect((folder / 'out' / 'compare.json').read_bytes() == before, 'a refusal changes nothing')
 
 
 def test_what_is_no_run_is_refused_with_file_and_line():

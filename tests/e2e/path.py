@@ -136,6 +136,9 @@ def test_a_tolerance_lets_shallow_contact_pass():
     with tempfile.TemporaryDirectory() as folder:
         scene = ball_over_a_block(folder)
         shallow = poses(folder, 0.02, 0.0098, 0.02)
+        expect_refused(
+            palpate('path', scene, shallow, '--tolerance', '1e-300'), 3, '1e-300', 'less than a step'
+        )
         expect(palpate('path', scene, shallow).code == 5, 'without tolerance')
         tolerated = palpate('path', scene, shallow, '--tolerance', '0.001')
         expect(tolerated.code == 0, 'with more than it is deep')

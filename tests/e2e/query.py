@@ -155,8 +155,12 @@ def test_two_sheets_push_each_other_once_they_have_walls():
 
     for z in (0.0015, -0.0015):
         line, told = answer('floor', 'plate', z)
+        walls = '2 of 2 triangles lie in open pieces and are walls 2 mm thick now; it has 12'
+        informed = json.loads(palpate('info', folder / 'scene.json', '--json').out)['scenes'][0]['warnings']
+        for whose, name in (('tool', 'plate'), ('mock-up', 'floor')):
+            expect(f'{whose} ' in told and f'{name}.stl: {walls}' in told, told)
+            expect(any(w.startswith(whose) and walls in w for w in informed), informed)
         boxes, _ = answer('floor_box', 'plate_box', z)
-        expect('2 of 2 triangles lie in open pieces and are walls 2 mm thick now; it has 12' in told, told)
         # The same boxes, but for the diagonals of their faces. Of single precision in the files of boxes, 0.002 is
         # off by 5e-11 m: of 0.5 mm 1e-7.
         expect(abs(boxes['force'][2]) > 0.1 and boxes['force'][2] * z > 0, boxes['force'])
@@ -244,6 +248,20 @@ def test_where_an_open_body_leaves_its_inside_in_doubt_it_is_said():
     expect(int(told['mouth'][1]) >= 2, told)  # a face of the plate, right above the mouth
     expect(told['block'][1] == 'none' and int(told['block'][2]) >= 4, told)
     expect(told['nowhere'][1] is None, told)
+
+
+def test_an_open_mockup_without_a_voxel_inside_is_said_to_be():
+    folder = Folder()
+    lidless = [t for t in box((0.1, 0.1, 0.1)) if any(abs(p[2] - 0.05) > 1e-9 for p in t)]
+    folder.write('lidless.stl', stl(lidless))
+    folder.write('cube.stl', stl(box((0.1, 0.1, 0.1))))
+    scene = folder.save(
+        static=[{'mesh': 'lidless.stl', 'units': 'm'}], tool={'mesh': 'cube.stl', 'units': 'm'}
+    )
+    told = palpate('query', scene, '--pose', '0.02 0.03 0.03 0 0 0 1').err
+    expect('no voxel of it is wholly inside' in told and '"sheet_thickness"' in told, told)
+    (informed,) = json.loads(palpate('info', scene, '--json').out)['scenes'][0]['bodies']
+    expect('no voxel of it is wholly inside' in informed and 'is a vote' in informed, informed)
 
 
 def test_in_the_mouth_of_an_open_body_nothing_is_pushed():

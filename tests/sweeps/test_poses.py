@@ -96,9 +96,23 @@ def test_poses_that_are_none_are_refused(poses, count, words):
         source_of(poses, count)
 
 
+def _boom(start, n):
+    raise ValueError('boom')
+
+
 def test_a_function_that_gives_another_number_of_poses_is_refused():
     with pytest.raises(PalpateError, match=r'asked for 5 from 10 on, gave shape \(4, 7\)'):
         FunctionPoses(lambda start, n: numpy.zeros((n - 1, 7)), 100).poses(10, 5)
+    with pytest.raises(PalpateError, match='asked for 5 from 10 on, failed: ValueError: boom'):
+        FunctionPoses(_boom, 100).poses(10, 5)
+    with pytest.raises(PalpateError, match='they are complex'):
+        source_of(numpy.zeros((3, 7), complex)).poses(0, 3)
+    rows = numpy.zeros((100, 7))
+    rows[42, 3] = numpy.nan
+    with pytest.raises(
+        PalpateError, match='rows 40 to 49 of the poses gave a number that is not finite, in row 42'
+    ):
+        source_of(rows).poses(40, 10)
     with pytest.raises(PalpateError, match='not finite'):
         FunctionPoses(lambda start, n: numpy.full((n, 7), numpy.inf), 100).poses(10, 5)
 

@@ -220,9 +220,48 @@ def test_two_sweeps_do_not_write_to_one_folder_at_once(command):
         (['--size', '0'], 3, 'size'),
         (['--within', '0.1'], 3, 'clearance'),
         (['--engine', 'gpu'], 4, 'no GPU'),
-        (['--workers', '0'], 3, 'not 0'),
+        (['--workers', '0'], 3, 'it is 0'),
+        (['--size', '16777217'], 3, '1 to 16777216'),
+        (['--x=-1e308:1e308:3'], 3, 'axis x'),
+        (['--x', '0:1:3000000', '--y', '0:1:3000000', '--z', '0:1:3000000'], 3, 'too large'),
+        (['--x', '0:1:100000', '--y', '0:1:100000', '--size', '1'], 3, 'make size larger'),
+        (['--out', '/proc/none.zarr'], 3, "can't write there"),
     ],
 )
 def test_the_command_refuses_bad_input_in_one_sentence(command, words, code, said):
-    got, out, err = command(BALL, *words).run()
+    asked = command(BALL, *words)
+    got, out, err = asked.run()
     assert got == code and said in err.splitlines()[-1] and out == '' and 'Traceback' not in err, err
+    assert not asked.out.exists(), 'what was refused has claimed the folder'
+
+
+def test_a_question_that_differs_in_one_axis_is_refused_by_its_name(swept):
+    swept()
+    with pytest.raises(
+        PalpateError, match=r"its poses z is \[-1.0, 1.0, 20\], this one's is \[-1.0, 1.0, 21\]"
+    ):
+        swept(poses=Grid(x=(-1, 1, 40), y=(-1, 1, 40), z=(-1, 1, 21), rx=(0, 90, 3)))
+
+
+def test_a_scheduler_whose_file_never_comes_is_told_in_a_sentence(tmp_path, monkeypatch, capsys):
+    from palpate.sweeps import cli, drive
+
+    monkeypatch.setattr(drive, 'PATIENCE_S', 0.5)
+    file = str(tmp_path / 'none.json')
+    words = ['scene.json', '--out', str(tmp_path / 'out.zarr'), '--x', '0', '--scheduler-file', file]
+    assert cli.main(words) == 3
+    err = capsys.readouterr().err.splitlines()
+    assert err == [
+        f'palpate-sweep: waiting for {file}',
+        f'palpate-sweep: no scheduler at {file}: there is no such file',
+    ]
+
+
+@pytest.mark.parametrize(
+    'wrong',
+    [{'size': 8.5}, {'size': '8'}, {'workers': 1.5}, {'share': 'a'}, {'again_poses': 2.5}, {'again': 'xyz'}],
+)
+def test_a_setting_of_another_type_is_refused_before_anything_is_made(wrong, tmp_path):
+    with pytest.raises(PalpateError, match=next(iter(wrong))):
+        sweep(Scene(BALL), Grid(x=0), out=tmp_path / 'out.zarr', **wrong)
+    assert not (tmp_path / 'out.zarr').exists()

@@ -119,6 +119,8 @@ class ErrorBench {
   ErrorBench(const BenchOptions& options, const Parts& parts) : options_(options), parts_(parts) {}
 
   Result<void> run() {
+    if (options_.scenes_only && options_.scenes.empty())
+      return Error{ErrorCode::kUsage, "--scenes-only goes with a scene"};
     facts_.more.emplace_back("load average", fmt::format("{:.1f} at the start", load_average()));
     facts_.more.emplace_back(
         "clock", options_.cpu_clock ? "this process's own time, of all its threads" : "the wall's");
@@ -139,7 +141,7 @@ class ErrorBench {
     }
     for (const std::string& scene : options_.scenes)
       if (!interrupted()) take(scene, scene_file(scene));
-    if (failed && table_.rows.empty()) return *failed;
+    if (failed && table_.rows.empty()) return Error{failed->code, "so nothing was measured"};
     for (const auto& [engine, leads] : leads_)
       facts_.findings.emplace(facts_.findings.begin(), "", lead_summary(engine, leads));
     if (!options_.scenes_only && !interrupted()) {

@@ -147,7 +147,9 @@ class NumericsBench {
 
   Result<void> contact_case(const std::string& name, const std::string& parameter, double value,
                             const NumericsScene& scene) {
-    if (!console_.progress(name.c_str(), 0)) return Error{ErrorCode::kInternal, "interrupted"};
+    if (name != step_name_) console_.step(step_name_ = name);
+    if (!console_.progress(fmt::format("{} {:g}", parameter, value).c_str(), 0))
+      return Error{ErrorCode::kInternal, "interrupted"};
     const PlainAnswer single = plainly<float>(scene, scene.pose), twice = plainly<double>(scene, scene.pose);
     if (interrupted()) return Error{ErrorCode::kInternal, "interrupted"};
     note(name, parameter, value, "fp32", judged(single.contact, single.force, scene));
@@ -491,6 +493,7 @@ class NumericsBench {
   const BenchOptions& options_;
   const Parts& parts_;
   Console console_;
+  std::string step_name_;  ///< of the case at hand
   std::unique_ptr<CollisionBackend> backend_;
   double step_m_ = 0;
   std::map<std::string, std::vector<Seen>> seen_;

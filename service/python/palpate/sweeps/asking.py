@@ -7,6 +7,7 @@ import numpy
 from .words import refuse
 
 ASKS = ('touches', 'clearance', 'query')
+ENGINES = ('auto', 'gpu', 'cpu', 'ref')
 
 
 def answer(scene, ask, within, poses):

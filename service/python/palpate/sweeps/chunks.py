@@ -5,6 +5,8 @@ import math
 
 # Long enough that a scheduler has little to do, short enough that a lost one costs seconds (chosen).
 SIZE = 1 << 16
+MOST_OF_A_CHUNK = 1 << 24  # poses; a chunk's column is compressed as one piece below 2 GiB
+MOST_CHUNKS = 10**7  # each has a file for its marker (chosen)
 
 
 class Chunks:

@@ -4,6 +4,7 @@ import argparse
 import importlib
 import os
 import sys
+import time
 
 import numpy
 
@@ -137,11 +138,20 @@ def _client(asked):
         return None, None
     from distributed import Client
 
+    from .drive import PATIENCE_S
     from .words import refuse
 
     def connect():
+        # Dask would wait for a file without an end.
+        if asked.scheduler_file is not None and not os.path.exists(asked.scheduler_file):
+            raise FileNotFoundError('there is no such file')
         return Client(asked.scheduler, scheduler_file=asked.scheduler_file)
 
+    if asked.scheduler_file is not None and not os.path.exists(asked.scheduler_file):
+        print(f'palpate-sweep: waiting for {asked.scheduler_file}', file=sys.stderr)
+        end = time.monotonic() + PATIENCE_S
+        while not os.path.exists(asked.scheduler_file) and time.monotonic() < end:
+            time.sleep(0.2)
     try:
         return connect(), connect
     except (OSError, ValueError) as error:

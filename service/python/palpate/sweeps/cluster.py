@@ -5,8 +5,6 @@ import logging
 import os
 import tempfile
 
-from .words import refuse
-
 # Python's part of the work is done side by side by so many; a scene's memory is taken by each (chosen).
 MOST_WORKERS = 8
 
@@ -29,8 +27,6 @@ def local(workers, gpu):
     processors = os.sched_getaffinity(0)
     if workers is None:
         workers = 1 if gpu else min(len(processors), MOST_WORKERS)
-    if workers < 1:
-        refuse(f'a sweep needs one worker or more, not {workers}')
     # One thread's batch has threads of its own; the other writes meanwhile.
     with tempfile.TemporaryDirectory(prefix='palpate-sweep-') as folder, LocalCluster(
         n_workers=workers,

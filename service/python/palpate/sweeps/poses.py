@@ -13,6 +13,7 @@ from .words import refuse
 
 # A table of an angle's sines and cosines travels to every worker; 10^6 of them are 16 MB (chosen).
 MOST_ANGLES = 10**6
+MOST_POSES = 2**63 - 1  # numpy's
 
 
 class Grid:
@@ -32,6 +33,8 @@ class Grid:
         self._axes = [_axis(name, axis) for name, axis in zip(self.NAMES, (x, y, z, rx, ry, rz))]
         self.shape = tuple(len(axis) for axis in self._axes)
         self.count = math.prod(self.shape)
+        if self.count > MOST_POSES:
+            refuse(f'a grid of {self.count} poses is too large; at most {MOST_POSES} can be numbered')
         for name, axis in zip(self.NAMES[3:], self._axes[3:]):
             if len(axis) > MOST_ANGLES:
                 refuse(f'{name} has {len(axis)} angles; at most {MOST_ANGLES} can be tabled')
@@ -82,7 +85,12 @@ class FunctionPoses:
         }
 
     def poses(self, start, n):
-        return checked(self.function(start, n), n, f'the function of poses, asked for {n} from {start} on,')
+        whose = f'the function of poses, asked for {n} from {start} on,'
+        try:
+            rows = self.function(start, n)
+        except Exception as error:  # whatever a caller's function raises
+            refuse(f'{whose} failed: {type(error).__name__}: {error}')
+        return checked(rows, n, whose)
 
 
 class ArrayPoses:
@@ -99,7 +107,9 @@ class ArrayPoses:
         return {'kind': 'array', 'count': self.count, 'sha256': digest.hexdigest()}
 
     def poses(self, start, n):
-        return checked(self.rows[start : start + n], n, f'rows {start} to {start + n - 1} of the poses')
+        return checked(
+            self.rows[start : start + n], n, f'rows {start} to {start + n - 1} of the poses', first=start
+        )
 
 
 def source_of(poses, count=None):
@@ -114,15 +124,19 @@ def source_of(poses, count=None):
     return ArrayPoses(rows)
 
 
-def checked(poses, n, whose):
+def checked(poses, n, whose, first=0):
+    """Poses as float64 (n, 7); `first`: the number of the first row, for sentences."""
     try:
+        if numpy.iscomplexobj(poses):
+            raise TypeError('they are complex')
         rows = numpy.ascontiguousarray(poses, dtype=numpy.float64)
     except (TypeError, ValueError) as error:
         refuse(f'{whose} gave no numbers: {error}')
     if rows.shape != (n, 7):
         refuse(f'{whose} gave shape {rows.shape}, not ({n}, 7)')
-    if not numpy.isfinite(rows).all():
-        refuse(f'{whose} gave a number that is not finite')
+    finite = numpy.isfinite(rows).all(axis=1)
+    if not finite.all():
+        refuse(f'{whose} gave a number that is not finite, in row {first + int(finite.argmin())}')
     return rows
 
 
@@ -145,6 +159,8 @@ class _Values:
 class _Range:
     def __init__(self, first, last, count):
         self._first, self._last, self._count = first, last, count
+        if not math.isfinite(last - first):
+            raise OverflowError
         self._step = (last - first) / (count - 1) if count > 1 else 0.0
 
     def __len__(self):

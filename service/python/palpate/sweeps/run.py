@@ -11,9 +11,11 @@ import shlex
 import sys
 import uuid
 
+import numpy
+
 from . import digest
-from .asking import ASKS, answer, maker, second_engine
-from .chunks import SIZE, Chunks
+from .asking import ASKS, ENGINES, answer, maker, second_engine
+from .chunks import MOST_CHUNKS, MOST_OF_A_CHUNK, SIZE, Chunks
 from .poses import ArrayPoses, source_of
 from .progress import Progress
 from .store import Full, Store
@@ -101,15 +103,27 @@ def sweep(
         refuse(f"ask is one of {', '.join(ASKS)}; it is {ask!r}")
     if within is not None and ask != 'clearance':
         refuse(f'within belongs to clearance; this asks {ask}')
-    if not 0 <= share <= 1:
+    if within is not None and not _is_number(within):
+        refuse(f'within is a distance in metres; it is {within!r}')
+    if again not in ENGINES:
+        refuse(f"again is one of {', '.join(ENGINES)}; it is {again!r}")
+    if not _is_number(share) or not 0 <= share <= 1:
         refuse(f'share is a part of the chunks, from 0 to 1; it is {share!r}')
-    for name, value in (('size', size), ('again_poses', again_poses)):
-        if value < 1:
-            refuse(f'{name} is a number of poses in a chunk, 1 or more; it is {value!r}')
+    for name, value, most in (('size', size, MOST_OF_A_CHUNK), ('again_poses', again_poses, None)):
+        if not _is_count(value) or (most is not None and value > most):
+            limits = '1 or more' if most is None else f'1 to {most}'
+            refuse(f'{name} is a number of poses in a chunk, {limits}; it is {value!r}')
+    if workers is not None and not _is_count(workers):
+        refuse(f'workers is how many processes answer, 1 or more; it is {workers!r}')
     source = source_of(poses, count)
     if not isinstance(scene, palpate.Scene):
         scene = palpate.Scene(scene, engine=engine)
     store, chunks = Store(os.path.abspath(out)), Chunks(source.count, size)
+    if chunks.count > MOST_CHUNKS:
+        refuse(
+            f'{source.count} poses in chunks of {size} are {chunks.count} chunks; at most {MOST_CHUNKS} can be'
+            ' kept, so make size larger'
+        )
     second = second_engine(scene.engine, again)
     wanted = _Wanted(ask, within, second, share, again_poses, workers, quiet, command, connect)
     try:
@@ -117,6 +131,14 @@ def sweep(
             return _sweep(scene, source, chunks, store, client, wanted)
     except Full as full:
         refuse(f'{full}; make room and give the same command again, which goes on from what is done')
+
+
+def _is_number(value):
+    return isinstance(value, (int, float, numpy.integer, numpy.floating)) and not isinstance(value, bool)
+
+
+def _is_count(value):
+    return isinstance(value, (int, numpy.integer)) and not isinstance(value, bool) and value >= 1
 
 
 def _sweep(scene, source, chunks, store, client, wanted):

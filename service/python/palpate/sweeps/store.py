@@ -60,9 +60,12 @@ class Store:
             refuse(f'{self.path} is a file; a sweep needs a folder')
         if self.path.exists() and any(self.path.iterdir()) and not (self.path / MARKERS).is_dir():
             refuse(f'{self.path} is there and is no sweep; name another folder or remove it')
-        with self._room():
-            (self.path / MARKERS).mkdir(parents=True, exist_ok=True)
-            lock = open(self.path / MARKERS / 'lock', 'w')
+        try:
+            with self._room():
+                (self.path / MARKERS).mkdir(parents=True, exist_ok=True)
+                lock = open(self.path / MARKERS / 'lock', 'w')
+        except OSError as error:
+            refuse(f"{self.path}: a sweep can't write there ({error.strerror})")
         with lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -84,9 +87,10 @@ class Store:
             found = self._group.attrs.asdict()
             for key, value in question.items():
                 if 'question' in found and found['question'].get(key) != value:
+                    what, its, ours = _differing(key, found['question'].get(key), value)
                     refuse(
-                        f'{self.path} holds another sweep: its {key} is {_short(found["question"].get(key))},'
-                        f' this one\'s is {_short(value)}; name another folder'
+                        f'{self.path} holds another sweep: its {what} is {_short(its)},'
+                        f' this one\'s is {_short(ours)}; name another folder'
                     )
             if 'question' not in found:
                 kept = {'poses': rows[:1].astype(numpy.float64)} if rows is not None else {}
@@ -165,6 +169,15 @@ class Store:
             if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
                 raise Full(f'{self.path}: no room to write ({error.strerror})') from error
             raise
+
+
+def _differing(name, one, other):
+    """The first part of two values that differs, by its name."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        for key in sorted({*one, *other}):
+            if one.get(key) != other.get(key):
+                return _differing(f'{name} {key}', one.get(key), other.get(key))
+    return name, one, other
 
 
 def _short(value):
