@@ -56,6 +56,38 @@ std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const In
   return static_cast<std::uint32_t>(to_box > height + kRounding ? to_box : height);
 }
 
+Int3 way_out(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t steps, const Int3& point) {
+  constexpr std::uint32_t kLeast = 64;  // steps
+  const Int3& n = mesh.unit_normal_q30[triangle];
+  if (steps < kLeast) return n;
+  const std::int64_t above =
+      (product(Long3(n), difference(point, mesh.corner(triangle, 0))) + (std::int64_t{1} << 29)) >> 30;
+  std::int64_t least = -1;
+  Long3 way(0);
+  for (int k = 0; k < 3; ++k) {
+    const Int3 &u = mesh.corner(triangle, k), &v = mesh.corner(triangle, (k + 1) % 3);
+    const Long3 edge = difference(v, u), from = difference(point, u), along(normalise(edge));
+    Long3 out = cross(along, Long3(n));
+    for (int c = 0; c < 3; ++c) out[c] >>= 30;
+    const std::int64_t size = root(product(along, along)), length = root(product(edge, edge));
+    const std::int64_t side = floor_divide(product(out, from), size),
+                       at = floor_divide(product(along, from), size);
+    if (side <= 0) continue;
+    const std::int64_t on = std::clamp(at, std::int64_t{0}, length), over = std::llabs(at - on);
+    const std::int64_t squared = above * above + side * side + over * over;
+    if (least >= 0 && squared >= least) continue;
+    least = squared;
+    for (int c = 0; c < 3; ++c) way[c] = floor_divide(along[c] * on, size) - from[c];
+  }
+  if (least < 0) return above > 0 ? -n : n;
+  const Long3 scaled(normalise(way));
+  const std::int64_t size = root(product(scaled, scaled));
+  Int3 unit;
+  for (int c = 0; c < 3; ++c)
+    unit[c] = static_cast<std::int32_t>(floor_divide(scaled[c] * (std::int64_t{1} << 30), size));
+  return unit;
+}
+
 std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point) {
   std::optional<Depth> best;
   std::vector<std::uint32_t> near;

@@ -16,6 +16,10 @@ struct Depth {
 /// "Depth").
 std::uint32_t distance(const LatticeMesh& mesh, std::uint32_t triangle, const Int3& point);
 
+/// The unit way from a point to the nearest one of a triangle that is `steps` away, Q30, as the triangle's
+/// normal where it is next to nothing (EXACTNESS section 4, "Way out").
+Int3 way_out(const LatticeMesh& mesh, std::uint32_t triangle, std::uint32_t steps, const Int3& point);
+
 /// The nearest triangle that bounds a solid: neither collapsed nor of a sheet. `tree` holds the boxes of
 /// `mesh`'s triangles.
 std::optional<Depth> nearest(const LatticeMesh& mesh, const BoxTree& tree, const Int3& point);

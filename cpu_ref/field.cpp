@@ -248,6 +248,9 @@ class Summing {
     Push push{.at = point,
               .against = -turned(frame_.pose, tool.unit_normal_q30[below->triangle]),
               .depth = below->steps};
+    if (sheet)
+      push.against =
+          -turned(frame_.pose, way_out(tool, below->triangle, below->steps, to_tool(frame_.pose, point)));
     push.along = sheet ? push.against : mockup.unit_normal_q30[id];
     push.whole = weight;
     push.weight =
@@ -265,6 +268,7 @@ class Summing {
     if (!below || ignored(below->triangle)) return;
     const bool sheet = is_sheet(tool, m) || !frame_.scene.tool_has_inside;
     Push push{.at = point, .against = mockup.unit_normal_q30[below->triangle], .depth = below->steps};
+    if (sheet) push.against = way_out(mockup, below->triangle, below->steps, point);
     push.along = sheet ? push.against : -turned(frame_.pose, tool.unit_normal_q30[m]);
     push.weight = sheet ? weight : counted_weight(weight, is_thin(tool, m), is_thin(mockup, below->triangle));
     if (!mockup.closed) push.weight = frame_.open_mockup.sure(push.weight, point);

@@ -8,6 +8,7 @@
 #include "shaders/shared/frame_field.h"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
+layout(constant_id = 1) const bool SHEETS = true;   // the mock-up has some
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -83,7 +84,13 @@ bool push_of(Asked asked, int32_t shells, Depth depth, out Push push) {
   if (depth.triangle == kNone || is_ignored(id)) return false;
   push.at = asked.point;
   push.against = -turned(body_normals(depth.triangle));
-  push.sheet = (mockup_info(id) & kInfoSheet) != 0u;
+  push.sheet = SHEETS && (mockup_info(id) & kInfoSheet) != 0u;
+  if (SHEETS) {
+    const uvec3 corners = body_triangles(depth.triangle);
+    const ivec3 out_of = way_out(uint32_t(depth.steps), body_normals(depth.triangle), body_vertices(corners.x),
+                                 body_vertices(corners.y), body_vertices(corners.z), asked.at);
+    if (push.sheet) push.against = -turned(out_of);
+  }
   push.along = push.sheet ? push.against : mockup_normals(id);
   push.depth = uint32_t(depth.steps);
   push.weight = weight;

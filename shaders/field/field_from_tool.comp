@@ -9,6 +9,7 @@
 
 layout(constant_id = 0) const bool CLOSED = true;   // the mock-up
 layout(constant_id = 1) const bool INSIDE = true;   // the tool has an inside
+layout(constant_id = 2) const bool SHEETS = true;   // some of its samples are a sheet's
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -71,7 +72,13 @@ bool push_of(FieldPoint work, int32_t shells, Depth depth, out Push push) {
   if (depth.triangle == kNone || is_ignored(depth.triangle)) return false;
   push.at = work.point;
   push.against = body_normals(depth.triangle);
-  push.sheet = !INSIDE || (tool_info(mobile) & kInfoSheet) != 0u;
+  push.sheet = SHEETS && (!INSIDE || (tool_info(mobile) & kInfoSheet) != 0u);
+  if (SHEETS) {
+    const uvec3 corners = body_triangles(depth.triangle);
+    const ivec3 out_of = way_out(uint32_t(depth.steps), push.against, body_vertices(corners.x),
+                                 body_vertices(corners.y), body_vertices(corners.z), work.point);
+    if (push.sheet) push.against = out_of;
+  }
   push.along = push.sheet ? push.against : -turned(tool_normals(mobile));
   push.depth = uint32_t(depth.steps);
   push.weight = work.weight;

@@ -69,4 +69,40 @@ int32_t distance_at(int32_t height, ivec3 n, ivec3 a, ivec3 b, ivec3 c, ivec3 p)
   const int32_t to_box = floor_root(wide_dot(gap, gap));
   return to_box > height + kDepthSlack ? to_box : height;
 }
+
+// From p to the nearest point of the edge from u to v.
+ivec3 way_to_edge(ivec3 u, ivec3 v, ivec3 p) {
+  const ivec3 edge = v - u, from = p - u, along = normalise(i64vec3(edge));
+  const int32_t size = floor_root(wide_dot(along, along));
+  const int32_t at = clamp(floor_quotient(wide_dot(along, from), size), 0, floor_root(wide_dot(edge, edge)));
+  return ivec3(floor_quotient(mul_wide(along.x, at), size), floor_quotient(mul_wide(along.y, at), size),
+               floor_quotient(mul_wide(along.z, at), size)) -
+         from;
+}
+
+// The unit way from p to the nearest point of abc, which is `steps` away, Q30 (section 4, "Way out").
+ivec3 way_out(uint32_t steps, ivec3 n, ivec3 a, ivec3 b, ivec3 c, ivec3 p) {
+  const int32_t above = int32_t((wide_dot(n, p - a) + (1l << 29)) >> 30), height = abs(above);
+  int64_t least = -1l;
+  pass_edge(a, b, p, n, height, least);
+  ivec3 u = a, v = b;
+  int64_t before = least;
+  pass_edge(b, c, p, n, height, least);
+  if (least != before) {
+    u = b;
+    v = c;
+  }
+  before = least;
+  pass_edge(c, a, p, n, height, least);
+  if (least != before) {
+    u = c;
+    v = a;
+  }
+  if (steps < kLeastWay) return n;
+  if (least == -1l) return above > 0 ? -n : n;
+  const ivec3 way = normalise(i64vec3(way_to_edge(u, v, p)));
+  const int32_t size = floor_root(wide_dot(way, way));
+  return ivec3(floor_quotient(int64_t(way.x) << 30, size), floor_quotient(int64_t(way.y) << 30, size),
+               floor_quotient(int64_t(way.z) << 30, size));
+}
 #endif

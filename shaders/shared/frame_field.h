@@ -59,6 +59,7 @@ PALPATE_CONSTANT uint32_t kMostTiles = 256u;     // of a triangle (chosen): wher
 PALPATE_CONSTANT uint32_t kFieldTileLanes = 8u;  // invocations that go through it (chosen: most triangles
                                                  // have no more cells, and llvmpipe takes eight at once)
 PALPATE_CONSTANT uint32_t kExtraTile = 16u;      // most extra samples of a tile
+PALPATE_CONSTANT uint32_t kLeastWay = 64u;       // steps from which on a way out has a direction (section 4)
 PALPATE_CONSTANT int32_t kDepthSlack = 16;       // steps by which a distance may be off, and more (section 4)
 
 // ---- structs

@@ -113,6 +113,90 @@ TEST(TriangleTree, HoldsEveryTriangleThatBoundsASolidOnceAndItsBoxesHoldThem) {
   }
 }
 
+/// The nearest point of a triangle, in extended precision, by its barycentric coordinates.
+using V = std::array<long double, 3>;
+V nearest_point(const LatticeMesh& mesh, std::uint32_t id, const V& point) {
+  const auto minus = [](const V& a, const V& b) { return V{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+  const auto dot = [](const V& a, const V& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto at = [](const Int3& v) {
+    return V{static_cast<long double>(v.x), static_cast<long double>(v.y), static_cast<long double>(v.z)};
+  };
+  V best{};
+  long double least = -1;
+  const auto offer = [&](const V& q) {
+    const V way = minus(q, point);
+    if (const long double squared = dot(way, way); least < 0 || squared < least) least = squared, best = q;
+  };
+  const V a = at(mesh.corner(id, 0)), b = at(mesh.corner(id, 1)), c = at(mesh.corner(id, 2));
+  for (const auto& [u, v] : {std::pair{a, b}, {b, c}, {c, a}}) {
+    const V way = minus(v, u);
+    const long double t = std::clamp(dot(minus(point, u), way) / dot(way, way), 0.0L, 1.0L);
+    offer({u[0] + t * way[0], u[1] + t * way[1], u[2] + t * way[2]});
+  }
+  const V e = minus(b, a), f = minus(c, a), g = minus(point, a);
+  const long double ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), whole = ee * ff - ef * ef,
+                    s = (ff * dot(e, g) - ef * dot(f, g)) / whole,
+                    t = (ee * dot(f, g) - ef * dot(e, g)) / whole;
+  if (s >= 0 && t >= 0 && s + t <= 1)
+    offer({a[0] + s * e[0] + t * f[0], a[1] + s * e[1] + t * f[1], a[2] + s * e[2] + t * f[2]});
+  return best;
+}
+
+TEST(DepthSearch, TheWayOutGoesToTheNearestPointOfTheTriangle) {
+  for (const Case& c : cases()) {
+    if (c.name != "sphere" && c.name != "box" && c.name != "far apart" && c.name != "as large as the lattice")
+      continue;  // needles of a soup have no nearest point that is well known
+    SCOPED_TRACE(c.name);
+    const TriangleTree tree = TriangleTree::make(c.mesh, [] { return true; });
+    DepthSearch search(c.mesh, tree, 100);
+    std::mt19937 random(9);
+    int edges = 0, faces = 0, near = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const auto id = static_cast<std::uint32_t>(random() % c.mesh.triangles.size());
+      if (c.name == "far apart" && id % 3 == 0) continue;  // the needles
+      const Int3 a = c.mesh.corner(id, 0), n = c.mesh.unit_normal_q30[id];
+      const double size = std::hypot(c.mesh.corner(id, 1).x - a.x, c.mesh.corner(id, 1).y - a.y,
+                                     c.mesh.corner(id, 1).z - a.z);
+      const auto within = [&](double most) { return std::uniform_real_distribution(-most, most)(random); };
+      Int3 point;
+      // Right above or below its middle, and anywhere about it.
+      const double up = within(i % 4 == 0 ? 30 : size), beside = i % 4 == 0 ? 0 : within(1.5 * size);
+      const Int3 middle = a / 3 + c.mesh.corner(id, 1) / 3 + c.mesh.corner(id, 2) / 3;
+      for (int k = 0; k < 3; ++k)
+        point[k] = static_cast<std::int32_t>(middle[k] + up * n[k] * 0x1p-30 +
+                                             (beside == 0 ? 0 : within(1.5 * size)));
+      const std::uint32_t steps = cpu_ref::distance(c.mesh, id, point);
+      const Int3 way = search.way_out(point, id, steps);
+      ASSERT_EQ(way, cpu_ref::way_out(c.mesh, id, steps, point)) << id;
+      if (steps < 64) {
+        EXPECT_EQ(way, n);
+        ++near;
+        continue;
+      }
+      // So far that way lies the triangle, but for what a distance may be off.
+      V reached, p;
+      long double own = 0, off = 0;
+      for (std::size_t k = 0; k < 3; ++k) p[k] = point[static_cast<int>(k)];
+      const V nearest = nearest_point(c.mesh, id, p);
+      const long double distance =
+          std::hypot(nearest[0] - p[0], std::hypot(nearest[1] - p[1], nearest[2] - p[2]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const long double part = way[static_cast<int>(k)] * 0x1p-30L;
+        reached[k] = p[k] + distance * part;
+        own += part * part;
+      }
+      const V there = nearest_point(c.mesh, id, reached);
+      for (std::size_t k = 0; k < 3; ++k) off += (there[k] - reached[k]) * (there[k] - reached[k]);
+      ASSERT_LT(std::sqrt(off), 16) << id << ", " << steps << " steps away";
+      ASSERT_NEAR(static_cast<double>(own), 1, 0x1p-26);
+      (way == n || way == -n ? faces : edges) += 1;
+    }
+    EXPECT_GT(edges, 100);
+    EXPECT_GT(faces, 100);
+    EXPECT_GT(near, 0);
+  }
+}
+
 TEST(TriangleTree, LeavesSheetsOutAndCanBeCancelled) {
   LatticeMesh mesh = soup(100, 1000, 100, 7);
   mesh.flags[3] |= kTriangleSheet;

@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "compute/native/frame_helper.h"
 #include "compute/native/processor.h"
 #include "compute/scene/exact.h"
 #include "model/bytes_of.h"
+#include "shaders/shared/frame_field.h"
 
 namespace palpate {
 namespace {
@@ -158,7 +160,14 @@ struct alignas(kOwnLines) DepthSearch::Tables {
   const Run& run(std::uint32_t number);
   Known& know(std::uint32_t triangle);
   std::int64_t height_above(const Int3& point, std::uint32_t triangle) const;
+  const Known::Edge& edge_of(std::uint32_t triangle, int edge);
+  struct Passed {
+    std::int64_t squared, at;
+    int edge;
+  };
+  std::optional<Passed> least_edge(const Int3& point, std::uint32_t triangle, std::int64_t height);
   std::int64_t distance_to(const Int3& point, std::uint32_t triangle);
+  Int3 way_out(const Int3& point, std::uint32_t triangle);
   void look_at(Search& search, std::uint32_t place, bool above);
   Cube& cube_at(const Int3& place);
 };
@@ -221,33 +230,46 @@ std::int64_t DepthSearch::Tables::height_above(const Int3& point, std::uint32_t 
                   30);
 }
 
-/// As EXACTNESS section 4 has it.
-std::int64_t DepthSearch::Tables::distance_to(const Int3& point, std::uint32_t id) {
+const Known::Edge& DepthSearch::Tables::edge_of(std::uint32_t id, int k) {
   Known& entry = know(id);
-  const std::int64_t height = height_above(point, id);
-  std::int64_t least = -1;
+  Known::Edge& edge = entry.edge[k];
+  if ((entry.edges >> k & 1) == 0) {
+    edge.from = mesh.corner(id, k);
+    const Int3 way = mesh.corner(id, k == 2 ? 0 : k + 1) - edge.from;
+    edge.along = exact::normalise({way.x, way.y, way.z});
+    const exact::Normal across = exact::cross(edge.along, mesh.unit_normal_q30[id]);
+    edge.out = Int3(static_cast<std::int32_t>(across.x >> 30), static_cast<std::int32_t>(across.y >> 30),
+                    static_cast<std::int32_t>(across.z >> 30));
+    edge.size = root(product(edge.along, edge.along));
+    edge.length = root(product(way, way));
+    entry.edges |= 1U << k;
+  }
+  return edge;
+}
+
+/// The edge by whose way the distance is least, of several the first; none: the point is on no edge's outer
+/// side.
+std::optional<DepthSearch::Tables::Passed> DepthSearch::Tables::least_edge(const Int3& point,
+                                                                           std::uint32_t id,
+                                                                           std::int64_t height) {
+  std::optional<Passed> least;
   for (int k = 0; k < 3; ++k) {
-    Known::Edge& edge = entry.edge[k];
-    if ((entry.edges >> k & 1) == 0) {
-      edge.from = mesh.corner(id, k);
-      const Int3 way = mesh.corner(id, k == 2 ? 0 : k + 1) - edge.from;
-      edge.along = exact::normalise({way.x, way.y, way.z});
-      const exact::Normal across = exact::cross(edge.along, mesh.unit_normal_q30[id]);
-      edge.out = Int3(static_cast<std::int32_t>(across.x >> 30), static_cast<std::int32_t>(across.y >> 30),
-                      static_cast<std::int32_t>(across.z >> 30));
-      edge.size = root(product(edge.along, edge.along));
-      edge.length = root(product(way, way));
-      entry.edges |= 1U << k;
-    }
+    const Known::Edge& edge = edge_of(id, k);
     const Int3 from = point - edge.from;
     const std::int64_t beyond = product(edge.out, from);
     if (beyond < edge.size) continue;  // ⌊beyond / size⌋ ≤ 0
     const std::int64_t side = beyond / edge.size, at = floor_quotient(product(edge.along, from), edge.size);
     const std::int64_t over = std::max({std::int64_t{0}, -at, at - edge.length});
     const std::int64_t squared = height * height + side * side + over * over;
-    if (least < 0 || squared < least) least = squared;
+    if (!least || squared < least->squared) least = {squared, at, k};
   }
-  if (least >= 0) return root(least);
+  return least;
+}
+
+/// As EXACTNESS section 4 has it.
+std::int64_t DepthSearch::Tables::distance_to(const Int3& point, std::uint32_t id) {
+  const std::int64_t height = height_above(point, id);
+  if (const auto least = least_edge(point, id, height)) return root(least->squared);
   // Beyond the end of a needle thinner than a step no side is above 0.
   std::int64_t squared = 0;
   for (int k = 0; k < 3; ++k) {
@@ -258,6 +280,28 @@ std::int64_t DepthSearch::Tables::distance_to(const Int3& point, std::uint32_t i
   }
   const std::int64_t to_box = root(squared);
   return to_box > height + kRounding ? to_box : height;
+}
+
+/// Likewise; the triangle isn't next to the point.
+Int3 DepthSearch::Tables::way_out(const Int3& point, std::uint32_t id) {
+  const Int3& n = mesh.unit_normal_q30[id];
+  const auto passed = least_edge(point, id, height_above(point, id));
+  if (!passed) {
+    const bool above = (product(n, point - mesh.corner(id, 0)) + (std::int64_t{1} << 29)) >= std::int64_t{1}
+                                                                                                 << 30;
+    return above ? -n : n;
+  }
+  const Known::Edge& edge = edge_of(id, passed->edge);
+  const std::int64_t on = std::clamp(passed->at, std::int64_t{0}, edge.length);
+  Int3 way;
+  for (int c = 0; c < 3; ++c)
+    way[c] =
+        edge.from[c] + static_cast<std::int32_t>(floor_quotient(edge.along[c] * on, edge.size)) - point[c];
+  way = exact::normalise({way.x, way.y, way.z});
+  const std::int64_t size = root(product(way, way));
+  for (int c = 0; c < 3; ++c)
+    way[c] = static_cast<std::int32_t>(floor_quotient(way[c] * (std::int64_t{1} << 30), size));
+  return way;
 }
 
 /// `above`: no edge has the point on its outer side.
@@ -298,6 +342,10 @@ DepthSearch& DepthSearch::operator=(DepthSearch&&) noexcept = default;
 DepthSearch::~DepthSearch() = default;
 
 std::uint64_t DepthSearch::looks() const { return tables_->looks; }
+
+Int3 DepthSearch::way_out(const Int3& point, std::uint32_t triangle, std::uint32_t steps) {
+  return steps < gpu::kLeastWay ? tables_->mesh.unit_normal_q30[triangle] : tables_->way_out(point, triangle);
+}
 
 std::uint64_t DepthSearch::bytes() const {
   return sizeof *tables_ + bytes_of(tables_->runs) + bytes_of(tables_->known) + bytes_of(tables_->cubes);

@@ -31,6 +31,9 @@ class DepthSearch {
   /// The point is within ±2^30. `guess`: the place of a triangle that may be near, as for a point beside it;
   /// kNobody: none. It changes nothing but the time.
   Depth below(const Int3& point, std::uint32_t guess);
+  /// The unit way from a point to the nearest one of a triangle that is `steps` away, Q30 (EXACTNESS section
+  /// 4, "Way out").
+  Int3 way_out(const Int3& point, std::uint32_t triangle, std::uint32_t steps);
   /// How many groups of eight boxes or triangles it has looked at in all.
   std::uint64_t looks() const;
   std::uint64_t bytes() const;

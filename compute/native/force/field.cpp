@@ -320,7 +320,8 @@ void PressureField::push_from_mockup(const LatticePose& pose, std::uint32_t stat
   lane.near_tool = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
   const bool sheet = is_sheet(geometry_->mockup, static_id);
-  const Int3 against = -turned(pose, geometry_->tool.unit_normal_q30[below.triangle]);
+  const Int3 against = -turned(pose, sheet ? lane.tool_depth.way_out(in_tool, below.triangle, below.steps)
+                                           : geometry_->tool.unit_normal_q30[below.triangle]);
   const bool thin = is_thin(geometry_->mockup, static_id), in_thin = is_thin(geometry_->tool, below.triangle);
   const auto weight = static_cast<std::uint32_t>(weight_q30 >> 6);
   std::uint32_t pushing = counted(weight, sheet, thin, in_thin);
@@ -336,7 +337,8 @@ void PressureField::push_from_tool(const LatticePose& pose, std::uint32_t mobile
   lane.near_mockup = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, lane)) return;
   const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
-  const Int3 against = geometry_->mockup.unit_normal_q30[below.triangle];
+  const Int3 against = sheet ? lane.mockup_depth.way_out(point, below.triangle, below.steps)
+                             : geometry_->mockup.unit_normal_q30[below.triangle];
   const bool thin = is_thin(geometry_->tool, mobile), in_thin = is_thin(geometry_->mockup, below.triangle);
   const auto weight = static_cast<std::uint32_t>(weight_q30 >> 6);
   std::uint32_t pushing = counted(weight, sheet, thin, in_thin);
