@@ -72,8 +72,8 @@ std::string test_name(const testing::TestParamInfo<ForceCaseMaker>& info) {
 INSTANTIATE_TEST_SUITE_P(Cases, Forces, testing::ValuesIn(asked_cases()), test_name);
 
 TEST(OpenBodies, PushWithoutAStepWhereTheirInsideBeginsWithoutASurface) {
-  // A rod goes up a pin that lacks its lower end, half of it through the pin's side. Eight voxels of 2 mm
-  // from that end the pin's inside begins.
+  // A rod goes up a pin that lacks its lower end, 0.1 mm out of the pin's side all along, so that they touch.
+  // Eight voxels of 2 mm from that end the pin's inside begins.
   Mesh pin = solids::box(Vec3(0), Vec3(0.003, 0.003, 0.048), Int3(1));
   std::erase_if(pin.triangles, [&](const auto& t) {
     return std::ranges::all_of(t, [&](std::uint32_t v) { return pin.vertices[v].z == 0; });
@@ -95,7 +95,7 @@ TEST(OpenBodies, PushWithoutAStepWhereTheirInsideBeginsWithoutASurface) {
       judge_path(subject, *geometry, *backend, Profile::kRefined, kForceStiffness);
   ASSERT_TRUE(figures) << figures.error().sentence;
   EXPECT_GT(figures->touching, 0u);
-  EXPECT_GT(figures->force_n.back(), 2 * figures->force_n.front());
+  EXPECT_GT(figures->force_n.back(), figures->force_n.front());  // the inside was reached
   EXPECT_LT(figures->largest_step, kMostStep);
 }
 
