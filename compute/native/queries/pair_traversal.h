@@ -34,6 +34,13 @@ inline std::uint32_t group_of(const TriangleTree& tree, std::uint32_t level, std
   return tree.level_begin[level - 1] + index;
 }
 
+/// Asks memory for what is looked at soon.
+template <class T>
+inline void prefetch(const T& what) {
+  const char* const at = reinterpret_cast<const char*>(&what);
+  for (std::size_t line = 0; line < sizeof what; line += 64) __builtin_prefetch(at + line);
+}
+
 inline double gap(const BoxOf& a, const BoxOf& b) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -374,8 +381,11 @@ bool PairSearch::descend(Policy& policy, const Lead& lead) {
     policy.aim({mobiles_.data(), count_});
     const std::uint32_t count =
         sorted(policy, run_box_, boxes, gaps, children(mockup, node.level, node.index), order);
-    for (std::uint32_t n = 0; n < count; ++n)
-      open_.push_back({node.level - 1, kWide * node.index + order[n], gaps[order[n]]});
+    for (std::uint32_t n = 0; n < count; ++n) {
+      const std::uint32_t child = kWide * node.index + order[n];
+      prefetch(mockup.boxes[group_of(mockup, node.level - 1, child)]);
+      open_.push_back({node.level - 1, child, gaps[order[n]]});
+    }
   }
   return true;
 }
@@ -414,6 +424,11 @@ bool PairSearch::group(Policy& policy, const Mobile& m, std::uint32_t number, un
   std::uint32_t count = sorted(policy, m.box, boxes, gaps, all, order);
   if (count == 0) return true;
   turned_gaps(m.corners, mockup.turned[number], turned);
+  for (std::uint32_t n = 0; n < count; ++n)
+    if (policy.near(turned[order[n]])) {
+      prefetch(trees_->boxes[kWide * number + order[n]]);
+      prefetch(trees_->corners[kWide * number + order[n]]);
+    }
   while (count-- > 0)
     if ((runs >> order[count] & 1) != 0 && policy.near(std::max(gaps[order[count]], turned[order[count]])) &&
         !leaf(policy, m, kWide * number + order[count], box_at(boxes, order[count])))
