@@ -241,8 +241,8 @@ std::string distrust_obj(std::string_view bytes) {
   }
   // Twice: vertices may stand behind the faces that name them.
   ObjCounts all{};
-  std::map<std::string_view, std::size_t> objects;  // and the line where each begins
-  std::string_view object;
+  std::map<std::string_view, std::size_t> named;  // by `o` or `g`, and the line where each begins
+  std::string_view name;                          // that was given last
   for (const bool count : {true, false}) {
     ObjCounts before{};
     std::size_t number = 0;
@@ -256,16 +256,23 @@ std::string distrust_obj(std::string_view bytes) {
         if (count)
           if (std::string wrong = distrust_obj_numbers(line, *list, number); !wrong.empty()) return wrong;
       }
+      if (count && line == "o" && !named.empty())
+        return fmt::format(
+            "has an object without a name in line {}; give it one, or its triangles join another", number);
       if (line.size() < 2 || !blank(line[1])) continue;
       if (line[0] == 'V' || line[0] == 'F')
         return fmt::format("has '{}' in line {}; OBJ's words are in small letters", line[0], number);
-      if (count && line[0] == 'o' && trimmed(line.substr(1)) != object) {
-        object = trimmed(line.substr(1));
-        if (const auto [at, first] = objects.emplace(object, number); !first)
+      if (count && (line[0] == 'o' || line[0] == 'g') && trimmed(line.substr(1)) != name) {
+        name = trimmed(line.substr(1));
+        // The library goes on with an object of that name, but not with its triangles.
+        if (const auto [at, first] = named.emplace(name, number); !first && line[0] == 'o') {
+          std::string shown(name.substr(0, 60));
+          std::replace(shown.begin(), shown.end(), kBlankOfName, ' ');
           return fmt::format(
               "has an object '{}' in line {} and another one in line {}; give each a name of "
               "its own, or their triangles get mixed up",
-              one_line(std::string(object.substr(0, 60))), at->second, number);
+              one_line(shown), at->second, number);
+        }
       }
       if (count || line[0] != 'f') continue;
       line = trimmed(line.substr(

@@ -12,6 +12,9 @@ namespace palpate {
 // with the file's name ("is cut short: …"), or nothing. None allocates by what the file claims. Not checked:
 // what is told apart later (indices, finite coordinates) and other formats.
 
+constexpr char kBlankOfName =
+    '\x1F';  ///< in a name, for a blank, at which the library behind us would end it
+
 bool is_stl_text(std::string_view bytes);  ///< as distrust_stl() takes it
 std::string distrust_stl(std::string_view bytes);
 std::string distrust_off(std::string_view bytes);

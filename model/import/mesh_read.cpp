@@ -86,8 +86,6 @@ struct Transform {
   }
 };
 
-constexpr char kBlankOfName = '\x1F';  ///< in a name, for a blank
-
 /// The name that a file gives a node or a mesh; empty where the importer had to invent one ("<STL_BINARY>",
 /// "<OFFRoot>", "nodes[3]", …).
 std::string given_name(const aiString& text) {
@@ -386,9 +384,18 @@ class Changed {
 constexpr std::string_view kBlanks = " \t";
 constexpr std::string_view kMark = "\xEF\xBB\xBF";  ///< that a text is UTF-8
 
+/// Puts kBlankOfName for the blanks in a name, the rest of a line from `from` on; `at`: the line's place.
+void keep_name_whole(std::string_view line, std::size_t from, std::size_t at, Changed& out) {
+  const std::size_t first = line.find_first_not_of(kBlanks, from), last = line.find_last_not_of(" \t\r");
+  for (std::size_t i = first; first != std::string_view::npos && i < last; ++i)
+    if (kBlanks.find(line[i]) != std::string_view::npos)
+      out.put(at + i, 1, std::string_view(&kBlankOfName, 1));
+}
+
 /// An OBJ as the library reads it rightly. It passes over lines that begin with blanks, and over the mark in
-/// front of the first; a number that begins with its point ends a line of numbers; and a comment that ends in
-/// a backslash takes the next line with it. Lines keep their numbers. Empty: nothing needs a change.
+/// front of the first; a number that begins with its point ends a line of numbers; a comment that ends in a
+/// backslash takes the next line with it; and a blank ends the name of an object, of which two may then have
+/// one. Lines keep their numbers. Empty: nothing needs a change.
 std::string obj_for_the_library(std::string_view bytes) {
   Changed out(bytes);
   std::size_t at = bytes.starts_with(kMark) ? kMark.size() : 0;
@@ -414,6 +421,7 @@ std::string obj_for_the_library(std::string_view bytes) {
       out.put(at + comment, end - at - comment, "");
     }
     goes_on = line.ends_with('\\');
+    if (line.starts_with("o ") || line.starts_with("o\t")) keep_name_whole(line, 1, at, out);
     for (std::size_t point = 0; numbers && (point = line.find('.', point)) != std::string_view::npos; ++point)
       if ((point == 0 || kBlanks.find(line[point - 1]) != std::string_view::npos) &&
           point + 1 < line.size() && line[point + 1] >= '0' && line[point + 1] <= '9')
@@ -434,13 +442,8 @@ std::string stl_for_the_library(std::string_view bytes) {
     const std::string_view line = bytes.substr(at, end - at);
     constexpr std::string_view kSolid = "solid";
     if (const std::size_t word = line.find_first_not_of(kBlanks);
-        word != std::string_view::npos && line.substr(word).starts_with(kSolid)) {
-      const std::size_t from = line.find_first_not_of(kBlanks, word + kSolid.size()),
-                        last = line.find_last_not_of(" \t\r");
-      for (std::size_t i = from; i < last && from != std::string_view::npos; ++i)
-        if (kBlanks.find(line[i]) != std::string_view::npos)
-          out.put(at + i, 1, std::string_view(&kBlankOfName, 1));
-    }
+        word != std::string_view::npos && line.substr(word).starts_with(kSolid))
+      keep_name_whole(line, word + kSolid.size(), at, out);
     at = end + 1;
   }
   return out.finish();

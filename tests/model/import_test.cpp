@@ -428,6 +428,24 @@ TEST_F(MeshImport, AnObjWithTwoObjectsOfOneNameIsRefused) {
   EXPECT_EQ(read(write("once.obj", "o A\n" + a + "o A\n" + a + "o B\n" + a)).triangles.size(), 3u);
   EXPECT_THAT(refused(write("twice.obj", "o A\n" + a + "o B\n" + a + "o A\n" + a)),
               HasSubstr("object 'A' in line 1 and another one in line 11"));
+  EXPECT_THAT(refused(write("group.obj", "o A 1\n" + a + "g B\n" + a + "o A 1\n" + a)),
+              HasSubstr("object 'A 1' in line 1 and another one in line 11"));
+  EXPECT_EQ(read(write("same.obj", "o A\ng A\n" + a + "o B\ng B\n" + a)).parts.size(), 2u);
+  EXPECT_THAT(refused(write("none.obj", "o A\n" + a + "o\n" + a)),
+              HasSubstr("an object without a name in line 6"));
+}
+
+// The library ends them at the first blank, and gave the second bolt's faces to the nut.
+TEST_F(MeshImport, NamesOfObjObjectsAreReadWhole) {
+  const std::string a = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+  const Mesh mesh = read(
+      write("names.obj", "o Bolt 1\n" + a + "o  Nut\r\n" + a + a + "o Bolt\t2 \n" + a + "o Bolt #3\n" + a));
+  ASSERT_EQ(mesh.parts.size(), 4u);
+  const char* const names[] = {"Bolt 1", "Nut", "Bolt 2", "Bolt #3"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_THAT(mesh.parts[i].path, ::testing::EndsWith(names[i]));
+    EXPECT_EQ(mesh.parts[i].triangle_count, i == 1 ? 2u : 1u);
+  }
 }
 
 // The library took three of them.
