@@ -147,14 +147,14 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
         std::string(backend.has_internal_voxels()
                         ? ""
                         : ", and no voxel of it is wholly inside, so that it hardly pushes the tool's own "
-                          "surface out (\"sheet_thickness\" in the scene gives it walls)") +
+                          "surface out (\"sheet_thickness\": \"auto\" in the scene gives it walls)") +
         ": " + vote +
         doubt(geometry.tool, {&contacts.cmt, &contacts.imt}, geometry.mockup, to_world, "tool"));
   if (!geometry.tool.closed && !pose->beyond_lattice)
     out.bodies.push_back(
         (contacts.flags & kFlagToolOpen) != 0
             ? "the tool is open and has no inside: it is pushed as a sheet is, out of the mock-up; "
-              "\"sheet_thickness\" in the scene gives it walls"
+              "\"sheet_thickness\": \"auto\" in the scene gives it walls"
             : "the tool is not closed: " + vote +
                   doubt(geometry.mockup, {&contacts.cst, &contacts.est}, geometry.tool, to_tool, "mock-up"));
 

@@ -137,6 +137,17 @@ bool stands_alone(const std::string& path) {
 
 namespace {
 
+template <class T>
+void add_optional(KeyBuilder& key, const std::optional<T>& value) {
+  key.value(std::uint8_t{value.has_value()});
+  if constexpr (std::is_same_v<T, Vec3>) {
+    if (value)
+      for (int k = 0; k < 3; ++k) key.value((*value)[k]);
+  } else {
+    if (value) key.value(*value);
+  }
+}
+
 bool add_source(KeyBuilder& key, const MeshSource& source) {
   key.text(source.file);  // its name is in warnings
   key.value(std::uint8_t{source.given != nullptr});
@@ -150,7 +161,7 @@ bool add_source(KeyBuilder& key, const MeshSource& source) {
   key.text(source.part);
   key.value(source.without.size());
   for (const std::string& name : source.without) key.text(name);
-  key.value(source.sheet_thickness_m);
+  add_optional(key, source.sheet_thickness_m);
   key.text(source.generate);
   key.value(source.generate_parameters.size());
   for (const auto& [name, value] : source.generate_parameters) {
@@ -158,17 +169,6 @@ bool add_source(KeyBuilder& key, const MeshSource& source) {
     key.value(value);
   }
   return true;
-}
-
-template <class T>
-void add_optional(KeyBuilder& key, const std::optional<T>& value) {
-  key.value(std::uint8_t{value.has_value()});
-  if constexpr (std::is_same_v<T, Vec3>) {
-    if (value)
-      for (int k = 0; k < 3; ++k) key.value((*value)[k]);
-  } else {
-    if (value) key.value(*value);
-  }
 }
 
 /// Hashes instead of writing: the third archive over the same list of members.

@@ -64,7 +64,14 @@ Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::str
       nodes.insert(part.path.substr(0, end));
       if (end == std::string::npos) break;
     }
-  if (nodes.count(name) != 0) return name;
+  if (nodes.count(name) != 0) {
+    const MeshPart* const part = numbered(parts, name);
+    if (part == nullptr || part->path == name) return name;
+    return bad_value(
+        fmt::format("'{}' has a node named '{}' beside its part of that number, '{}': say this by "
+                    "its name, that by its number",
+                    file, name, part->path));
+  }
   std::vector<std::string> matches, names;
   for (const std::string& node : nodes) {
     names.push_back(last_name(node));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -14,7 +15,8 @@ namespace palpate {
 namespace {
 
 constexpr std::uint32_t kBorder = UINT32_MAX;
-constexpr double kLeastCosine = 0.5;  // of a mitre: twice half the thickness
+constexpr double kLeastCosine = 0.5;     // of a mitre: twice half the thickness
+constexpr std::size_t kMostAsked = 256;  // triangles of a piece, for how far it encloses (chosen)
 
 using Cell = std::array<std::int64_t, 3>;
 
@@ -23,14 +25,15 @@ std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corne
 
 class Sheets {
  public:
-  Sheets(const Mesh& mesh, double cell) : mesh_(mesh) {
+  Sheets(const Mesh& mesh, double cell, Enclosure* enclosure) : mesh_(mesh) {
     find_places(cell);
     find_triangles();
     find_partners();
     turn_alike();
-    find_open();
+    find_open(enclosure);
   }
 
+  std::size_t spared() const { return spared_; }
   std::size_t copies() const {
     return static_cast<std::size_t>(std::count(state_.begin(), state_.end(), State::kTwin));
   }
@@ -148,15 +151,49 @@ class Sheets {
     }
   }
 
-  void find_open() {
+  /// The mean over a piece's area, of so many of its triangles.
+  static double encloses(const std::vector<std::uint32_t>& piece, const Enclosure& enclosure) {
+    double sum = 0, area = 0;
+    const std::size_t step = (piece.size() + kMostAsked - 1) / kMostAsked;
+    for (std::size_t i = 0; i < piece.size(); i += step) {
+      const double own = enclosure.area(piece[i]);
+      area += own;
+      sum += own * enclosure.at(piece[i]);
+    }
+    return area > 0 ? sum / area : 0;
+  }
+
+  void find_open(Enclosure* enclosure) {
     Components pieces(state_.size());
     for (std::uint32_t side = 0; side < partner_.size(); ++side)
       if (partner_[side] != kBorder) pieces.join(side / 3, partner_[side] / 3);
     std::vector<bool> open(state_.size(), false);
     for (std::uint32_t side = 0; side < partner_.size(); ++side)
       if (counts(side / 3) && partner_[side] == kBorder) open[pieces.find(side / 3)] = true;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> of_piece;
     for (std::uint32_t t = 0; t < state_.size(); ++t)
-      if (counts(t) && open[pieces.find(t)]) state_[t] = State::kWall;
+      if (counts(t) && open[pieces.find(t)]) of_piece[pieces.find(t)].push_back(t);
+    // What surely is a sheet first, for it disturbs what is said of others.
+    if (enclosure == nullptr) {
+      for (const auto& [first, triangles] : of_piece) become_walls(triangles);
+      return;
+    }
+    for (const double bound : {0.5 * kBoundsAnInside, 0.8 * kBoundsAnInside, kBoundsAnInside}) {
+      std::vector<std::uint32_t> sheets;
+      std::erase_if(of_piece, [&](const auto& piece) {
+        const auto& triangles = piece.second;
+        if (encloses(triangles, *enclosure) > bound) return false;
+        become_walls(triangles);
+        sheets.insert(sheets.end(), triangles.begin(), triangles.end());
+        return true;
+      });
+      enclosure->take_for_sheets(sheets);
+    }
+    for (const auto& [first, triangles] : of_piece) spared_ += triangles.size();
+  }
+
+  void become_walls(const std::vector<std::uint32_t>& triangles) {
+    for (const std::uint32_t t : triangles) state_[t] = State::kWall;
   }
 
   const Mesh& mesh_;
@@ -165,6 +202,7 @@ class Sheets {
   std::vector<std::uint32_t>
       partner_;               ///< by side: the only other one along the same edge; kBorder: a border
   std::vector<bool> turned_;  ///< by triangle
+  std::size_t spared_ = 0;    ///< Thickened::spared
 };
 
 /// How far each joined corner goes out, by its number.
@@ -201,9 +239,10 @@ std::vector<Vec3> ways_out(const Mesh& mesh, const Sheets& sheets, const std::ve
 
 }  // namespace
 
-Thickened thicken(const Mesh& mesh, double thickness_m) {
-  Sheets sheets(mesh, thickness_m / 4096);
+Thickened thicken(const Mesh& mesh, double thickness_m, Enclosure* enclosure) {
+  Sheets sheets(mesh, thickness_m / 4096, enclosure);
   Thickened out;
+  out.spared = sheets.spared();
   out.copies = sheets.copies();
   out.mesh.vertices = mesh.vertices;
   const std::vector<std::uint32_t> joined = sheets.joined_corners();

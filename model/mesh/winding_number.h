@@ -15,7 +15,7 @@ class WindingNumber {
  public:
   explicit WindingNumber(const LatticeMesh& mesh);
 
-  /// At a point, lattice steps, in the mesh's own frame. On a triangle: half-way between its two sides.
+  /// At a point, lattice steps, in the mesh's own frame. On a triangle: as on one of its sides.
   double at(const Vec3& point) const;
 
  private:

@@ -17,14 +17,15 @@ namespace palpate {
 
 /// Where triangles come from: a file, a generator by name, or whoever has them in memory.
 struct MeshSource {
-  std::string file;                                   ///< absolute after loading; empty when generated
-  std::shared_ptr<const Mesh> given;                  ///< in place of the file, whose name it has then
-  double scale = 1;                                   ///< metres per file unit
-  bool scale_stated = false;                          ///< the scene says `units` or `scale`
-  std::string part;                                   ///< node taken out; empty: all
-  std::vector<std::string> without;                   ///< nodes left out
-  double sheet_thickness_m = 0;                       ///< walls of what is open (thicken()); 0: none
-  std::string generate;                               ///< generator name, e.g. "disassembly/mockup"
+  std::string file;                             ///< absolute after loading; empty when generated
+  std::shared_ptr<const Mesh> given;            ///< in place of the file, whose name it has then
+  double scale = 1;                             ///< metres per file unit
+  bool scale_stated = false;                    ///< the scene says `units` or `scale`
+  std::string part;                             ///< node taken out; empty: all
+  std::vector<std::string> without;             ///< nodes left out
+  std::optional<double> sheet_thickness_m = 0;  ///< walls of what is open (thicken()); 0: none; empty: auto,
+                                                ///< a 64th of the tool, where no inside is bounded
+  std::string generate;                         ///< generator name, e.g. "disassembly/mockup"
   std::map<std::string, double> generate_parameters;  ///< "triangles", …
 };
 

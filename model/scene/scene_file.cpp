@@ -10,6 +10,7 @@
 #include "model/files/path_file.h"
 #include "model/generate.h"
 #include "model/mesh/mesh_import.h"
+#include "model/mesh/thicken.h"
 #include "model/scene/scene_json.h"
 #include "model/scene/scene_keys.h"
 
@@ -89,8 +90,6 @@ void read_generate(const SceneObject& body, const char* usual_body, MeshSource& 
   if (triangles > 0) source.generate_parameters["triangles"] = triangles;
 }
 
-constexpr double kThinnestSheet = 1e-6;  // m: thicken() tells corners apart by a 4,096th of it, in 64 bits
-
 void read_source(const SceneObject& body, const char* usual_body, const GivenMeshes& given,
                  MeshSource& source) {
   if (body.has("mesh") == body.has("generate"))
@@ -120,10 +119,17 @@ void read_source(const SceneObject& body, const char* usual_body, const GivenMes
   source.scale_stated = body.has("units") || body.has("scale");
   body.text("part", source.part);
   body.texts("without", source.without);
-  body.number("sheet_thickness", {0, 1, " m"}, source.sheet_thickness_m);
-  if (source.sheet_thickness_m > 0 && source.sheet_thickness_m < kThinnestSheet)
-    body.fail("sheet_thickness",
-              "is " + body.at("sheet_thickness").dump() + "; it must be 0, or from 1e-06 to 1 m");
+  if (body.is_auto("sheet_thickness")) {
+    source.sheet_thickness_m.reset();
+  } else {
+    if (body.has("sheet_thickness") && body.at("sheet_thickness").is_string())
+      body.fail("sheet_thickness",
+                "is " + body.at("sheet_thickness").dump() + "; it must be \"auto\" or a number of metres");
+    body.number("sheet_thickness", {0, kThickestSheet, " m"}, *source.sheet_thickness_m);
+    if (*source.sheet_thickness_m > 0 && *source.sheet_thickness_m < kThinnestSheet)
+      body.fail("sheet_thickness",
+                "is " + body.at("sheet_thickness").dump() + "; it must be 0, \"auto\", or from 1e-06 to 1 m");
+  }
 }
 
 void read_statics(const SceneObject& scene_json, const GivenMeshes& given, Scene& scene) {

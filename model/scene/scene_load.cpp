@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kLargestUsual = 100,
                  kSmallestUsual = 1e-3;  ///< m; beyond, the units are probably not the right ones
+constexpr double kWallsPerTool = 64;     ///< "sheet_thickness": "auto" (chosen: docs/ACCURACY.md)
 
 std::string source_name(const MeshSource& source) {
   return source.file.empty() ? "the generated " + source.generate : source.file;
@@ -101,35 +102,52 @@ bool all_are_places(const Mesh& mesh) {
          });
 }
 
-Mesh walled(const Mesh& mesh, const MeshSource& source, const char* body,
-            std::vector<std::string>& warnings) {
-  Thickened thick = thicken(mesh, source.sheet_thickness_m);
+/// `tool_side`: the tool's longest, m. `body`: mock-up or tool, for sentences.
+Result<Mesh> walled(Mesh mesh, const MeshSource& source, double tool_side, const char* body,
+                    std::vector<std::string>& warnings) {
+  const double thickness = source.sheet_thickness_m.value_or(
+      std::clamp(tool_side / kWallsPerTool, kThinnestSheet, kThickestSheet));
+  if (!(thickness > 0) || !all_are_places(mesh)) return mesh;  // what is no place is refused later
+  std::optional<Enclosure> enclosure;
+  if (!source.sheet_thickness_m) {
+    Result<Enclosure> found = Enclosure::of(mesh);
+    if (!found) return bad_value(source_name(source) + ": " + found.error().sentence);
+    enclosure = std::move(*found);
+  }
+  Thickened thick = thicken(mesh, thickness, enclosure ? &*enclosure : nullptr);
+  const std::string spared =
+      thick.spared == 0
+          ? ""
+          : fmt::format("; {} in open pieces that bound an inside stay as they are", thick.spared);
   if (thick.walls == 0) {
-    warnings.push_back(fmt::format("{} {}: no piece of it is open, so \"sheet_thickness\" changes nothing",
-                                   body, source_name(source)));
+    warnings.push_back(fmt::format("{} {}: no piece of it is {}, so \"sheet_thickness\" changes nothing{}",
+                                   body, source_name(source), enclosure ? "a sheet" : "open", spared));
     return mesh;
   }
   warnings.push_back(fmt::format(
-      "{} {}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} triangles{}",
-      body, source_name(source), thick.walls, mesh.triangles.size(), 1e3 * source.sheet_thickness_m,
+      "{} {}: {} of {} triangles lie in open pieces and are walls {:.3g} mm thick now; it has {} "
+      "triangles{}{}",
+      body, source_name(source), thick.walls, mesh.triangles.size(), 1e3 * thickness,
       thick.mesh.triangles.size(),
-      thick.copies == 0 ? "" : fmt::format(", without {} that were there twice", thick.copies)));
+      thick.copies == 0 ? "" : fmt::format(", without {} that were there twice", thick.copies), spared));
   return std::move(thick.mesh);
 }
 
-/// `body`: mock-up or tool, for sentences.
-Result<Mesh> mesh_of(const MeshSource& source, const char* body, Files& files,
-                     const Tessellation& tessellation, const ImportProgress& progress,
-                     std::vector<std::string>& warnings) {
+Result<Mesh> mesh_of(const MeshSource& source, Files& files, const Tessellation& tessellation,
+                     const ImportProgress& progress, std::vector<std::string>& warnings) {
   Result<Mesh> mesh =
       source.file.empty() ? generate(source) : files.read(source, tessellation, progress, warnings);
   if (!mesh) return mesh;
   if (!source.part.empty()) mesh = take_part(*mesh, source.part, source_name(source));
-  if (mesh && !source.without.empty()) mesh = without_parts(*mesh, source.without, source_name(source));
+  if (mesh && !source.without.empty()) {
+    auto rest = without_parts(*mesh, source.without, source_name(source));
+    if (!rest && !source.part.empty())
+      return bad_value(
+          fmt::format("of \"without\", in part '{}' alone: {}", source.part, rest.error().sentence));
+    mesh = std::move(rest);
+  }
   if (mesh && mesh->triangles.empty())
     return bad_value(source_name(source) + " has no triangle left after \"part\" and \"without\"");
-  if (mesh && source.sheet_thickness_m > 0 && all_are_places(*mesh))
-    mesh = walled(*mesh, source, body, warnings);
   return mesh;
 }
 
@@ -246,16 +264,20 @@ Result<SceneMeshes> import_scene(Scene& scene, const Progress& progress, const I
   if (!tell(progress, "import", 0)) return cancelled;
   Tessellation tessellation{stated_deflection(scene.response), scene.response.tessellation_angle_deg,
                             scene.tool.source.part};
-  auto tool = mesh_of(scene.tool.source, "tool", files, tessellation, of_body(0), scene.warnings);
+  auto tool = mesh_of(scene.tool.source, files, tessellation, of_body(0), scene.warnings);
+  if (!tool) return tool.error();
+  const double side = extent(*tool);
+  if (tessellation.deflection_m == 0) tessellation.deflection_m = side / kDeflectionsPerSide;
+  tool = walled(std::move(*tool), scene.tool.source, side, "tool", scene.warnings);
   if (!tool) return tool.error();
   meshes.tool = std::move(*tool);
-  if (tessellation.deflection_m == 0) tessellation.deflection_m = extent(meshes.tool) / kDeflectionsPerSide;
   const std::vector<std::string> prefixes = prefixes_of(scene.statics);
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
     const auto body_progress = of_body(i + 1);
     if (!body_progress("import", 0)) return cancelled;
     const StaticBody& body = scene.statics[i];
-    const auto mesh = mesh_of(body.source, "mock-up", files, tessellation, body_progress, scene.warnings);
+    auto mesh = mesh_of(body.source, files, tessellation, body_progress, scene.warnings);
+    if (mesh) mesh = walled(std::move(*mesh), body.source, side, "mock-up", scene.warnings);
     if (!mesh) return mesh.error();
     place(*mesh, body.placement, prefix_of(body.source), prefixes[i], meshes.mockup);
   }

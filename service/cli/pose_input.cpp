@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -33,20 +34,29 @@ std::string shown(std::string_view text) {
   return one_line(std::string(text.substr(0, 80))) + (text.size() > 80 ? "…" : "");
 }
 
+/// A field to a number; the error names the field, not the file.
+Result<double> to_number(std::string_view text, const char* name) {
+  std::string_view field = trim(text);
+  if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);  // from_chars knows no plus sign
+  double value = 0;
+  const char* end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, value);
+  if (error == std::errc::result_out_of_range && stop == end)
+    return bad_value(fmt::format("has {} '{}', which is beyond a double", name, shown(field)));
+  if (error != std::errc() || stop != end)
+    return bad_value(fmt::format("has {} '{}', which is not a number", name, shown(field)));
+  return value;
+}
+
 /// Seven fields to a pose; the error says which field, without naming the file.
 Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
   if (fields.size() != kFields.size())
     return bad_value(fmt::format("has {} values instead of 7 (x y z qx qy qz qw)", fields.size()));
   std::array<double, 7> value{};
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    std::string_view field = trim(fields[i]);
-    if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);  // from_chars knows no plus sign
-    const char* end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, value[i]);
-    if (error == std::errc::result_out_of_range && stop == end)
-      return bad_value(fmt::format("has {} '{}', which is beyond a double", kFields[i], shown(field)));
-    if (error != std::errc() || stop != end)
-      return bad_value(fmt::format("has {} '{}', which is not a number", kFields[i], shown(field)));
+    const Result<double> number = to_number(fields[i], kFields[i]);
+    if (!number) return number.error();
+    value[i] = *number;
   }
   return pose_of(value);
 }
@@ -55,6 +65,10 @@ Result<Pose> to_pose(const std::vector<std::string_view>& fields) {
 Result<Pose> to_timed_pose(const std::vector<std::string_view>& fields, std::size_t columns) {
   if (fields.size() != columns)
     return bad_value(fmt::format("has {} values instead of the header's {}", fields.size(), columns));
+  const Result<double> time = to_number(fields[0], "time_s");
+  if (!time) return time.error();
+  if (!std::isfinite(*time))
+    return bad_value(fmt::format("has time_s '{}', which is not finite", shown(trim(fields[0]))));
   return to_pose({fields.begin() + 1, fields.begin() + 1 + kFields.size()});
 }
 
@@ -100,7 +114,10 @@ Result<std::vector<Pose>> read_poses(const std::string& path) {
 }
 
 Result<std::vector<Pose>> read_poses_of_scene(const std::string& path, const std::string& scene_file) {
-  if (!guided_header(path).value_or(false)) return read_poses(path);
+  // What can be read once alone, such as a pipe, is not asked for its header first.
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown) || !guided_header(path).value_or(false))
+    return read_poses(path);
   const auto points = read_path(path, true);
   if (!points) return points.error();
   const auto scene = read_scene(scene_file);

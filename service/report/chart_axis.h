@@ -24,7 +24,7 @@ std::string tick_text(double value);
 /// The beginning of a picture: ground, title and unit.
 std::string chart_head(const std::string& title, const std::string& unit, double height);
 
-inline constexpr double kChartWidth = 760, kChartLeft = 86, kChartRight = 20, kChartTop = 40,
+inline constexpr double kChartWidth = 760, kChartLeft = 86, kChartRight = 34, kChartTop = 40,
                         kChartPlot = 330;
 
 /// Colour of a series, from its number.

@@ -64,8 +64,13 @@ std::string pictures(const LoadedScene& scene, const PathMoment& moment, const s
         section_through(moment.where.value_or(world(geometry, pose->translation)), moment.facing, 4 * voxel);
     near.label = moment.depth_m ? length_text(*moment.depth_m) + " deep" : "";
   }
+  turn_through_tool(
+      geometry, *pose,
+      moment.clearance.kind == Clearance::Kind::kApart ? near.on_mobile - near.on_static : moment.facing,
+      near);
   SectionView whole = near;
-  whole.width_m = std::max(1.6 * tool_size(geometry), 2 * near.width_m);
+  whole.width_m = 2 * near.width_m;
+  show_tool(geometry, *pose, whole);
   whole.label.clear();
   if (moment.clearance.kind != Clearance::Kind::kApart) near.width_m = 0.6 * tool_size(geometry);
   const auto figure = [&](const SectionView& view, const std::string& caption) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <optional>
 
 #include "service/cli/numbers.h"
@@ -16,9 +18,15 @@ namespace {
 constexpr double kWidth = 460, kHeight = 340;  // of the picture, its own units
 constexpr std::size_t kMostLines = 20'000;     // of a body (chosen: a megabyte)
 
+constexpr std::size_t kTurns = 12;  // of a plane, half a turn in all (chosen)
+
 struct Line {
   double x[2], y[2];
 };
+
+Vec3 in_world(const SceneGeometry& geometry, const Int3& p) {
+  return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
+}
 
 /// Where a triangle crosses the plane, seen in the picture; empty: nowhere, or out of sight.
 std::optional<Line> cut(const Vec3 corners[3], const SectionView& view, const Vec3& normal) {
@@ -70,7 +78,7 @@ double bar_length(double width_m) {
 
 SectionView section_through(const Vec3& middle, const Vec3& apart, double width_m) {
   SectionView view;
-  view.middle = middle;
+  view.middle = view.mark = middle;
   view.width_m = width_m;
   const double size = glm::length(apart);
   if (!(size > 0)) return view;
@@ -87,17 +95,62 @@ SectionView section_through(const Vec3& middle, const Vec3& apart, double width_
   return view;
 }
 
+void turn_through_tool(const SceneGeometry& geometry, const LatticePose& pose, const Vec3& apart,
+                       SectionView& view) {
+  const double size = glm::length(apart);
+  if (!(size > 0)) return;
+  const Vec3 way = apart / size, across = glm::cross(view.right, view.up);
+  const Vec3 beside = view.right - way * glm::dot(way, view.right),
+             above = view.up - way * glm::dot(way, view.up);
+  const bool level = glm::length(above) > glm::length(beside);  // the way leads to the right
+  const Vec3 other = level ? view.up : view.right;
+  double most = 0;
+  std::array<double, kTurns> lengths{};
+  std::array<SectionView, kTurns> views;
+  for (std::size_t i = 0; i < kTurns; ++i) {
+    const double angle = std::numbers::pi * static_cast<double>(i) / kTurns;
+    views[i] = view;
+    (level ? views[i].up : views[i].right) = std::cos(angle) * other + std::sin(angle) * across;
+    const Vec3 normal = glm::cross(views[i].right, views[i].up);
+    for (std::uint32_t t = 0; t < geometry.tool.triangles.size(); ++t) {
+      const Vec3 corners[3] = {in_world(geometry, transform(pose, geometry.tool.corner(t, 0))),
+                               in_world(geometry, transform(pose, geometry.tool.corner(t, 1))),
+                               in_world(geometry, transform(pose, geometry.tool.corner(t, 2)))};
+      if (const auto line = cut(corners, views[i], normal))
+        lengths[i] += std::hypot(line->x[1] - line->x[0], line->y[1] - line->y[0]);
+    }
+    most = std::max(most, lengths[i]);
+  }
+  view = views[static_cast<std::size_t>(
+      std::find_if(lengths.begin(), lengths.end(), [&](double l) { return 2 * l >= most; }) -
+      lengths.begin())];
+}
+
+void show_tool(const SceneGeometry& geometry, const LatticePose& pose, SectionView& view) {
+  double low[2] = {0, 0}, high[2] = {0, 0};  // from the mark, to the right and up
+  for (const Int3& vertex : geometry.tool.vertices) {
+    const Vec3 p = in_world(geometry, transform(pose, vertex)) - view.mark;
+    const double at[2] = {glm::dot(p, view.right), glm::dot(p, view.up)};
+    for (int k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], at[k]);
+      high[k] = std::max(high[k], at[k]);
+    }
+  }
+  view.middle = view.mark + 0.5 * (low[0] + high[0]) * view.right + 0.5 * (low[1] + high[1]) * view.up;
+  constexpr double kRoom = 1.15;  // of what is shown
+  view.width_m =
+      std::max(view.width_m, kRoom * std::max(high[0] - low[0], (high[1] - low[1]) * kWidth / kHeight));
+}
+
 std::string section_svg(const SceneGeometry& geometry, const LatticePose& pose, const SectionView& view) {
-  const auto world = [&](const Int3& p) {
-    return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
-  };
   std::string out =
       fmt::format("<svg style=\"overflow:hidden\" viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http:{}\">",
                   kWidth, kHeight, "//www.w3.org/2000/svg");
   out += outline(geometry.mockup.triangles.size(), "var(--cst, #c2453f)", view,
-                 [&](std::uint32_t t, int k) { return world(geometry.mockup.corner(t, k)); });
-  out += outline(geometry.tool.triangles.size(), "var(--cmt, #2f6fd6)", view,
-                 [&](std::uint32_t t, int k) { return world(transform(pose, geometry.tool.corner(t, k))); });
+                 [&](std::uint32_t t, int k) { return in_world(geometry, geometry.mockup.corner(t, k)); });
+  out += outline(geometry.tool.triangles.size(), "var(--cmt, #2f6fd6)", view, [&](std::uint32_t t, int k) {
+    return in_world(geometry, transform(pose, geometry.tool.corner(t, k)));
+  });
   const double scale = kWidth / view.width_m;
   const auto x_of = [&](const Vec3& p) { return kWidth / 2 + scale * glm::dot(p - view.middle, view.right); };
   const auto y_of = [&](const Vec3& p) { return kHeight / 2 - scale * glm::dot(p - view.middle, view.up); };
@@ -107,12 +160,13 @@ std::string section_svg(const SceneGeometry& geometry, const LatticePose& pose, 
         "stroke-width=\"1.2\" stroke-dasharray=\"3 2\"/>",
         x_of(view.on_static), y_of(view.on_static), x_of(view.on_mobile), y_of(view.on_mobile));
   out += fmt::format(
-      "<circle cx=\"{0}\" cy=\"{1}\" r=\"7\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1\"/>",
-      kWidth / 2, kHeight / 2);
+      "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"7\" fill=\"none\" stroke=\"currentColor\" "
+      "stroke-width=\"1\"/>",
+      x_of(view.mark), y_of(view.mark));
   out += fmt::format(
-      "<text x=\"{}\" y=\"{}\" font-size=\"13\" fill=\"currentColor\" paint-order=\"stroke\" "
+      "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"13\" fill=\"currentColor\" paint-order=\"stroke\" "
       "stroke=\"var(--card, #fff)\" stroke-width=\"3\">{}</text>",
-      kWidth / 2 + 12, kHeight / 2 - 10, markup_text(view.label));
+      x_of(view.mark) + 12, y_of(view.mark) - 10, markup_text(view.label));
   const double bar = bar_length(view.width_m);
   out += fmt::format(
       "<path d=\"M12 {0}h{1:.2f}m0 -4v8M12 {2}v8\" fill=\"none\" stroke=\"currentColor\"/><text x=\"12\" "

@@ -76,7 +76,7 @@ def test_a_number_out_of_range():
     folder = Folder()
     refuse_scene(folder, 'stiffness', '-5', response={'stiffness': -5})
     refuse_scene(folder, 'smooth_angle_deg', '120', response={'smooth_angle_deg': 120})
-    for thickness in (-0.001, 1e-9, 2, '1 mm', None):
+    for thickness in (-0.001, 1e-9, 2, '1 mm', 'Auto', None):
         tool = {'mesh': 'ball.stl', 'units': 'm', 'sheet_thickness': thickness}
         refuse_scene(folder, 'sheet_thickness', str(thickness).replace('None', 'null'), tool=tool)
     refuse_scene(folder, 'rotation', static=[{'mesh': 'block.stl', 'rotation': [0, 0, 0, 2]}])

@@ -166,12 +166,24 @@ def test_two_sheets_push_each_other_once_they_have_walls():
         expect(abs(boxes['force'][2]) > 0.1 and boxes['force'][2] * z > 0, boxes['force'])
         for a, b in zip(line['force'], boxes['force'], strict=True):
             expect(abs(a - b) <= 1e-6 * abs(boxes['force'][2]), (line['force'], boxes['force']))
+    # A 64th of the tool.
+    for z in (0.0004, -0.0004):
+        line, told = answer('floor', 'plate', z, thickness='auto')
+        expect('2 of 2 triangles lie in open pieces and are walls 0.625 mm thick now' in told, told)
+        expect(line['force'][2] * z > 0, line['force'])
+    line, told = answer('floor', 'plate', 0.0007, thickness='auto')
+    expect(not line['contact'], line)
     line, told = answer('floor', 'plate', 0, thickness=0)
     expect(line['contact'] and 'no_direction' in line['flags'] and line['force'] == [0, 0, 0], line)
-    expect('"sheet_thickness" in the scene gives it walls' in told and 'open pieces' not in told, told)
+    expect(
+        '"sheet_thickness": "auto" in the scene gives it walls' in told and 'open pieces' not in told, told
+    )
     folder.save(static=[{'mesh': 'floor_box.stl', 'units': 'm', 'sheet_thickness': 0.001}])
     told = palpate('query', folder / 'scene.json', '--pose', PRESSED).err
     expect('no piece of it is open, so "sheet_thickness" changes nothing' in told, told)
+    folder.save(static=[{'mesh': 'floor_box.stl', 'units': 'm', 'sheet_thickness': 'auto'}])
+    told = palpate('query', folder / 'scene.json', '--pose', PRESSED).err
+    expect('no piece of it is a sheet, so "sheet_thickness" changes nothing' in told, told)
 
 
 def test_a_batch_on_all_cores_prints_what_single_queries_do():

@@ -196,6 +196,87 @@ TEST(Thicken, EdgesOfThreeTrianglesAndStripsOfOneSideBecomeClosed) {
   EXPECT_LT(volume, 1.005 * plates / std::cos(13.5 / 180 * std::numbers::pi));
 }
 
+/// The sides of a cube of side 1 about the origin, all but `without`, each a little smaller than it; some
+/// turned over.
+Mesh cube_with_gaps(int without) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      if (2 * axis + (side > 0 ? 1 : 0) == without) continue;
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const auto& [u, v] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+        Vec3 p(0);
+        p[axis] = 0.5 * side;
+        p[(axis + 1) % 3] = 0.4999 * u;
+        p[(axis + 2) % 3] = 0.4999 * v;
+        mesh.vertices.push_back(p);
+      }
+      const bool over = (axis + side) % 2 == 0;
+      mesh.triangles.push_back({first, first + (over ? 2U : 1U), first + (over ? 1U : 2U)});
+      mesh.triangles.push_back({first, first + (over ? 3U : 2U), first + (over ? 2U : 3U)});
+    }
+  mesh.parts = {{"cube", 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
+  return mesh;
+}
+
+void add(const Mesh& other, Mesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+  mesh.parts = {{"all", 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
+}
+
+Thickened thickened_but_insides(const Mesh& mesh) {
+  auto enclosure = Enclosure::of(mesh);
+  EXPECT_TRUE(enclosure) << enclosure.error().sentence;
+  return thicken(mesh, 0.01, &*enclosure);
+}
+
+TEST(Thicken, OpenPiecesThatBoundAnInsideAreSpared) {
+  Mesh mesh = cube_with_gaps(-1);
+  EXPECT_EQ(thicken(mesh, 0.01).walls, 12u);
+  EXPECT_EQ(thickened_but_insides(mesh).walls, 0u);
+  EXPECT_EQ(thickened_but_insides(mesh).spared, 12u);
+  add(cube_with_gaps(-1), mesh);  // once more in the same place
+  EXPECT_EQ(thickened_but_insides(mesh).spared, 12u);
+  EXPECT_EQ(thickened_but_insides(mesh).copies, 12u);
+  // A sheet in it, and one beside it, are walls all the same.
+  for (const double x : {-0.2, 3.0}) {
+    Mesh sheet = square(2);
+    for (Vec3& v : sheet.vertices) v = 0.4 * v + Vec3(x, -0.2, 0);
+    add(sheet, mesh);
+  }
+  EXPECT_EQ(thickened_but_insides(mesh).walls, 16u);
+  EXPECT_EQ(thickened_but_insides(mesh).spared, 12u);
+  // Without its lid a box is a shell.
+  EXPECT_EQ(thickened_but_insides(cube_with_gaps(5)).walls, 10u);
+}
+
+// Seen from the point of a ball opposite to a hole, the hole fills 2π (1 − cos) of half its angle.
+TEST(Thicken, EnclosureOfABallWithAHole) {
+  constexpr double kOff = 0.05;  // as winding_number_test has it
+  for (const double angle : {0.3, 0.8, 1.1}) {
+    Mesh ball = solids::sphere(1, 96, 48);
+    std::erase_if(ball.triangles, [&](const auto& t) {
+      const Vec3 middle = (ball.vertices[t[0]] + ball.vertices[t[1]] + ball.vertices[t[2]]) / 3.0;
+      return middle.z > std::cos(angle) * glm::length(middle);
+    });
+    ball.parts = {{"ball", 0, static_cast<std::uint32_t>(ball.triangles.size())}};
+    const auto enclosure = Enclosure::of(ball);
+    ASSERT_TRUE(enclosure);
+    int asked = 0;
+    for (std::uint32_t t = 0; t < ball.triangles.size(); ++t) {
+      const Vec3 middle = (ball.vertices[ball.triangles[t][0]] + ball.vertices[ball.triangles[t][1]] +
+                           ball.vertices[ball.triangles[t][2]]) /
+                          3.0;
+      if (middle.z > -0.99) continue;
+      ++asked;
+      EXPECT_NEAR(enclosure->at(t), 0.5 - (1 - std::cos(angle / 2)) / 2, kOff) << angle;
+    }
+    EXPECT_GT(asked, 0);
+  }
+}
+
 TEST(Thicken, WhatIsThereTwiceIsOneWall) {
   Mesh twice = square(2);
   const Mesh once = twice;

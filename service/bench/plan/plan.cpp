@@ -55,15 +55,24 @@ class PlanBench {
 
   /// For each thing that a plan may leave out: the scenes where it gives time or memory, those first that
   /// leave out nothing else. The scene whose plan leaves out nothing was timed like all others: what it seems
-  /// to gain is the measurement's own, and no smaller gain counts.
+  /// to gain or to lose is the measurement's own, and nothing smaller counts.
   void what_each_gives() {
-    double noise = 1;
+    double noise = 1, slow = 1;
     for (const Worth& worth : worths_)
-      if (worth.left_out.empty()) noise = std::min(noise, worth.time.low);
-    facts_.findings.emplace_back(
-        "",
-        fmt::format("Two plans that are the same differ by a ratio of {:.3f} here: a gain counts below that.",
-                    noise));
+      if (worth.left_out.empty()) {
+        noise = std::min(noise, worth.time.low);
+        slow = std::max(slow, worth.time.high);
+      }
+    facts_.findings.emplace_back("",
+                                 fmt::format("Of two plans that are the same one took {:.3f} to {:.3f} of "
+                                             "the other's time here: what lies between tells nothing.",
+                                             noise, slow));
+    std::string slower;
+    for (const Worth& worth : worths_)
+      if (!worth.left_out.empty() && worth.time.low > slow)
+        slower += fmt::format("{}'{}' ({:.3f} of the time, {:.3f} to {:.3f})", slower.empty() ? "" : ", ",
+                              worth.scene, worth.time.median, worth.time.low, worth.time.high);
+    if (!slower.empty()) facts_.findings.emplace_back("", "Slower with less: " + slower + ".");
     std::set<std::string> all;
     for (const Worth& worth : worths_) all.insert(worth.left_out.begin(), worth.left_out.end());
     for (const std::string& what : all) {
@@ -73,7 +82,7 @@ class PlanBench {
         const bool sooner = worth.time.high < noise, less = worth.saved_mib >= 0.01;
         if (!sooner && !less) continue;
         std::string& list = worth.left_out.size() == 1 ? alone : others;
-        list += fmt::format("{}{} ({}{}{})", list.empty() ? "" : ", ", worth.scene,
+        list += fmt::format("{}'{}' ({}{}{})", list.empty() ? "" : ", ", worth.scene,
                             sooner ? fmt::format("{:.3f} of the time, {:.3f} to {:.3f}", worth.time.median,
                                                  worth.time.low, worth.time.high)
                                    : "",

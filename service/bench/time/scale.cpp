@@ -287,17 +287,25 @@ Result<void> bench_scale(const BenchOptions& options, const Parts& parts) {
     return Error{ErrorCode::kUsage,
                  "bench scale: a scene of one's own wants poses: name a file with --poses (a refined scene "
                  "has no path)"};
-  const std::filesystem::path folder = std::filesystem::path(options.out) / "scenes";
+  const std::filesystem::path out(options.out), folder = out / "scenes";
   std::error_code error;
+  const bool fresh = !std::filesystem::exists(out, error),
+             fresh_folder = !std::filesystem::exists(folder, error);
   std::filesystem::create_directories(folder, error);
   if (error)
     return bad_value(fmt::format("{}: the directory can't be made ({})", folder.string(), error.message()));
   Scale scale(options, parts);
-  if (options.scenes.empty())
-    if (auto done = measure_generated(options, folder, scale); !done) return done;
-  for (const std::string& file : options.scenes)
-    if (auto done = measure_refined(options, file, folder, scale); !done) return done;
-  return scale.write();
+  const auto measure_all = [&]() -> Result<void> {
+    if (options.scenes.empty())
+      if (auto done = measure_generated(options, folder, scale); !done) return done;
+    for (const std::string& file : options.scenes)
+      if (auto done = measure_refined(options, file, folder, scale); !done) return done;
+    return scale.write();
+  };
+  auto done = measure_all();
+  if (!done && fresh_folder) std::filesystem::remove_all(folder, error);
+  if (!done && fresh) std::filesystem::remove(out, error);
+  return done;
 }
 
 }  // namespace palpate

@@ -93,7 +93,7 @@ class _Columns(Mapping[str, 'NDArray[Any]']):
             self._arrays[name] = (
                 np.empty(shape + tail, dtype)
                 if out is None
-                else _fitting(name, out[name], shape + tail, dtype)
+                else _fitting(name, out.get(name), shape + tail, dtype)
             )
         self._flat = {name: array.reshape(-1) for name, array in self._arrays.items()}
 

@@ -233,8 +233,16 @@ class Scene:
     ) -> Motions:
         """When a tool that moves on the screw from `start` to `goal` first touches; never late. Poses (7,) or
         (N, 7) either."""
-        begin, end = np.broadcast_arrays(np.asarray(start, np.float64), np.asarray(goal, np.float64))
-        (first_poses, shape), (last_poses, _) = _poses(begin), _poses(end)
+        (first_poses, begins), (last_poses, ends) = _poses(start), _poses(goal)
+        try:
+            shape = np.broadcast_shapes(begins, ends)
+        except ValueError:
+            raise PalpateError(
+                2, f'starts of the shape {begins} and goals of the shape {ends} do not go together'
+            ) from None
+        begin = np.broadcast_to(first_poses.reshape(*begins, 7), (*shape, 7))
+        end = np.broadcast_to(last_poses.reshape(*ends, 7), (*shape, 7))
+        (first_poses, _), (last_poses, _) = _poses(begin), _poses(end)
         found = Motions(shape)
         self._answer(
             'first_contact',
@@ -406,11 +414,16 @@ def _mesh(mesh: MeshLike) -> Optional[tuple[NDArray[np.float64], NDArray[np.uint
     """(vertices, faces) of a mesh in memory; None: a file's name."""
     if isinstance(mesh, (str, bytes)) or mesh is None:
         return None
-    vertices, faces = (
-        (mesh.vertices, mesh.faces) if hasattr(mesh, 'vertices') and hasattr(mesh, 'faces') else mesh
-    )
-    # Copies: who hands them over may go on with them.
-    corners, indices = np.array(vertices, np.float64, order='C'), np.asarray(faces)
+    try:
+        vertices, faces = (
+            (mesh.vertices, mesh.faces) if hasattr(mesh, 'vertices') and hasattr(mesh, 'faces') else mesh
+        )
+        # Copies: who hands them over may go on with them.
+        corners, indices = np.array(vertices, np.float64, order='C'), np.asarray(faces)
+    except (TypeError, ValueError):
+        raise PalpateError(
+            3, f'a mesh is a file, or vertices (V, 3) and faces (F, 3); this one is a {type(mesh).__name__}'
+        ) from None
     if corners.ndim != 2 or corners.shape[1] != 3:
         raise PalpateError(3, f'the vertices of a mesh have the shape {corners.shape}; (V, 3) is wanted')
     if indices.ndim != 2 or indices.shape[1] != 3 or not np.issubdtype(indices.dtype, np.integer):
