@@ -72,6 +72,20 @@ def test_a_path_through_the_block_is_not_clear_though_its_poses_are():
         )
 
 
+def test_poses_are_read_from_a_pipe():
+    with tempfile.TemporaryDirectory() as folder:
+        scene, path = ball_over_a_block(folder), poses(folder, 0.02, 0.012)
+        for question in (('path', scene), ('query', scene, '--any', '--poses')):
+            piped = subprocess.run(
+                ['sh', '-c', f'cat {path} | "$@" /dev/stdin', 'sh', PROGRAM, *map(str, question)],
+                capture_output=True,
+                timeout=TIMEOUT_S,
+            )
+            expect(piped.returncode == 0 and piped.stdout.decode() == palpate(*question, path).out, piped)
+        path.write_text('time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,0,0,0.3,0,0,0,1\nnan,0,0,0.4,0,0,0,1\n')
+        expect_refused(palpate('path', scene, path), 3, "line 3: it has time_s 'nan', which is not finite")
+
+
 def test_poses_as_a_spreadsheet_saves_them_are_read():
     with tempfile.TemporaryDirectory() as folder:
         scene = ball_over_a_block(folder)

@@ -68,6 +68,8 @@ def test_columns_are_written_in_place(boxes):
     assert found.depth is mine['depth'] and mine['depth'][1] > 0 and mine['force'][1, 2] > 0
     with pytest.raises(palpate.PalpateError, match=r'shape \(2, 3\) and dtype float64'):
         boxes.query_batch(at(0.02, 0.009), out={'force': np.zeros((3, 2))})
+    with pytest.raises(palpate.PalpateError, match='the column depth'):
+        boxes.query_batch(at(0.02, 0.009), ('depth',), out={'force': np.zeros((2, 3))})
 
 
 def test_lists_are_the_triangles_that_meet(boxes):
@@ -135,6 +137,7 @@ def test_answers_are_those_of_the_command_line_bit_by_bit(clamp, tmp_path):
         (((), {'tool': (CUBE[0], CUBE[1] + 1), 'static': PLATE}), 'index 8'),
         (((), {'tool': (CUBE[0][:, :2], CUBE[1]), 'static': PLATE}), r'shape \(8, 2\)'),
         (((), {'tool': (CUBE[0] * np.nan, CUBE[1]), 'static': PLATE}), 'vertex 0'),
+        (((), {'tool': CUBE, 'static': {'plate': PLATE}}), 'this one is a dict'),
         ((({'tool': {'mesh': CUBE}, 'static': [{'mesh': PLATE}], 'responce': {}},), {}), 'responce'),
     ],
 )
@@ -155,6 +158,12 @@ def test_what_is_wrong_with_a_scene_is_said(arguments, sentence):
 def test_what_is_wrong_with_poses_is_said(boxes, poses, sentence):
     with pytest.raises(palpate.PalpateError, match=sentence):
         boxes.touches(poses)
+
+
+def test_motions_want_as_many_starts_as_goals(boxes):
+    assert boxes.first_contact(at(0.11)[0], at(0.09, 0.06)).shape == (2,)
+    with pytest.raises(palpate.PalpateError, match=r'\(3,\) and goals of the shape \(2,\)'):
+        boxes.first_contact(at(0.11, 0.1, 0.09), at(0.09, 0.06))
 
 
 def test_sheets_in_memory_have_walls_where_the_scene_says():
