@@ -276,6 +276,17 @@ def test_an_open_mockup_without_a_voxel_inside_is_said_to_be():
     expect('no voxel of it is wholly inside' in informed and 'is a vote' in informed, informed)
 
 
+def test_triangles_that_are_there_twice_are_told():
+    folder = Folder()
+    folder.write('floor.stl', stl(box((0.1, 0.1, 0.02))))
+    folder.write('cube.stl', stl(box((0.01, 0.01, 0.01))))
+    tool = {'mesh': 'cube.stl', 'units': 'm'}
+    for copies, repeated in ((1, False), (2, True)):
+        scene = folder.save(static=[{'mesh': 'floor.stl', 'units': 'm'}] * copies, tool=tool)
+        told = palpate('query', scene, '--pose', PRESSED).err
+        expect(("12 of 24 triangles of the mock-up repeat others' three corners" in told) == repeated, told)
+
+
 def test_in_the_mouth_of_an_open_body_nothing_is_pushed():
     # A ball that lacks a cap, and a plate that lies in its mouth, beside its wall: whatever the voxels.
     folder = Folder()
