@@ -317,9 +317,9 @@ void add_query_command(CLI::App& app, QueryOptions& query, const Parts& parts, R
               "near-miss check: --clearance of the poses that are no further than M metres, and no others")
           ->type_name("M");
   query_app
-      ->add_option_function<double>(
-          "--tolerance", number_within("--tolerance", 0, 100, query.tolerance_m),
-          "with --any or --clearance: a contact no deeper than M metres does not count")
+      ->add_option_function<double>("--tolerance", number_within("--tolerance", 0, 100, query.tolerance_m),
+                                    "with --any or --clearance: a contact no deeper than M metres does not "
+                                    "count; rounded down to steps of the lattice")
       ->type_name("M");
   any->excludes(clearance)->excludes(within);
   for (CLI::Option* verdict : {any, clearance, within})  // whose lines have none of it

@@ -61,6 +61,15 @@ def pressed(folder):
     return folder.save(), '0 0 0.018 0 0 0 1'
 
 
+def test_a_long_bench_of_a_force_ends_when_asked():
+    folder = Folder()
+    scene = folder.save()
+    poses = folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n0,0,0.018,0,0,0,1\n0.002,0,0.018,0,0,0,1\n')
+    asked = ('bench', 'force', scene, '--poses', poses, '--frames', '100000', '--out', folder / 'out')
+    code, said = at_terminal(*asked, until=b'poses')
+    expect(code == 1 and 'interrupted' in said and not (folder / 'out').exists(), said)
+
+
 def test_a_query_at_a_terminal_is_for_people_and_elsewhere_for_programs():
     folder = Folder()
     scene, pose = pressed(folder)

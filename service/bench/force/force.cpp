@@ -93,11 +93,13 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
     const Profile profile = scene.plan.plan.profile;
     const double stiffness = scene.loaded.scene.response.stiffness_n_per_m;
     Result<ForceFigures> figures =
-        judge_path(subject, scene.loaded.geometry, *scene.backend, profile, stiffness);
+        judge_path(subject, scene.loaded.geometry, *scene.backend, profile, stiffness,
+                   [&](double part) { return console.progress("poses", part); });
     if (!figures) return figures.error();
     if (profile == Profile::kRefined)
       if (auto done = judge_hand(subject, scene.loaded.geometry, *scene.backend, stiffness,
-                                 scene.loaded.scene.start_contacts, *figures);
+                                 scene.loaded.scene.start_contacts, *figures,
+                                 [&](double part) { return console.progress("poses of a hand", part); });
           !done)
         return done.error();
     add_row(table, subject.name, scene.backend->name(), profile, 1, *figures);

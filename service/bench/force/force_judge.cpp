@@ -148,6 +148,11 @@ Step step_between(const SceneGeometry& geometry, const Pose& p, const Pose& q) {
   return {way, turn, glm::length(way) + geometry.tool_gyration_m * glm::length(turn)};
 }
 
+bool may_go_on(const PathProgress& go_on, std::size_t done, std::size_t all) {
+  return !go_on || go_on(static_cast<double>(done) / static_cast<double>(all));
+}
+Error interrupted_error() { return {ErrorCode::kInternal, "interrupted"}; }
+
 void judge_truths(const ForceCase& subject, const std::vector<Answer>& answers, ForceFigures& out) {
   for (const ForceCase::Truth& truth : subject.truths) {
     const Wrench& wrench = answers[truth.at].wrench;
@@ -184,12 +189,14 @@ std::vector<Pose> finer_path(const std::vector<Pose>& path, std::size_t count) {
 }
 
 Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry,
-                                CollisionBackend& backend, Profile profile, double stiffness) {
+                                CollisionBackend& backend, Profile profile, double stiffness,
+                                const PathProgress& go_on) {
   Asking asking(geometry, backend, profile, stiffness);
   ForceFigures out;
   out.poses = subject.path.size();
   std::vector<Answer> answers;
   for (const Pose& pose : subject.path) {
+    if (!may_go_on(go_on, answers.size(), subject.path.size())) return interrupted_error();
     Result<Answer> answer = asking.at(pose);
     if (!answer) return answer.error();
     answers.push_back(*answer);
@@ -252,7 +259,7 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
 }
 
 Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend,
-                        double stiffness, StartContacts start, ForceFigures& out) {
+                        double stiffness, StartContacts start, ForceFigures& out, const PathProgress& go_on) {
   Asking asking(geometry, backend, Profile::kRefined, stiffness);
   if (start == StartContacts::kIgnoreInitial) asking.ignore_start();
   out.hand_step = 0;
@@ -260,6 +267,7 @@ Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry,
   const double floor = 0.01 * out.largest_n;
   Vec3 before(0);
   for (std::size_t i = 0; i < subject.path.size(); ++i) {
+    if (!may_go_on(go_on, i, subject.path.size())) return interrupted_error();
     const Result<Answer> answer = asking.at(subject.path[i], true);
     if (!answer) return answer.error();
     const Vec3 here = answer->wrench.force;

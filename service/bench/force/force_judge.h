@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,14 +45,19 @@ inline constexpr double kMostStep = 3, kMostLoop = 0.03, kMostAntisymmetry = 0.0
 Result<ForceFigures> judge_force(const ForceCase& subject, CollisionBackend& backend, Profile profile,
                                  double voxel_scale = 1);
 
-/// The same for geometry that is prepared already.
+/// Told how much of a path is done; false: the user wants no more of it.
+using PathProgress = std::function<bool(double done)>;
+
+/// The same for geometry that is prepared already. Error (kInternal): ended by `go_on`.
 Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& geometry,
-                                CollisionBackend& backend, Profile profile, double stiffness);
+                                CollisionBackend& backend, Profile profile, double stiffness,
+                                const PathProgress& go_on = {});
 
 /// Adds `hand_step` and `hand_reversals` to the figures of a path in `refined`. `start`: as for a run, what
 /// touches at the path's first pose is left out until it has opened, or not.
 Result<void> judge_hand(const ForceCase& subject, const SceneGeometry& geometry, CollisionBackend& backend,
-                        double stiffness, StartContacts start, ForceFigures& out);
+                        double stiffness, StartContacts start, ForceFigures& out,
+                        const PathProgress& go_on = {});
 
 /// `count` poses along a path, evenly by its numbers, straight between two and turned evenly.
 std::vector<Pose> finer_path(const std::vector<Pose>& path, std::size_t count);
