@@ -64,14 +64,16 @@ Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::str
       nodes.insert(part.path.substr(0, end));
       if (end == std::string::npos) break;
     }
-  if (nodes.count(name) != 0) {
+  // "#3" is a number, but somebody may have named a part so.
+  const auto named = [&](const std::string& node) -> Result<std::string> {
     const MeshPart* const part = numbered(parts, name);
-    if (part == nullptr || part->path == name) return name;
+    if (part == nullptr || part->path == node) return node;
     return bad_value(
         fmt::format("'{}' has a node named '{}' beside its part of that number, '{}': say this by "
                     "its name, that by its number",
                     file, name, part->path));
-  }
+  };
+  if (nodes.count(name) != 0) return named(name);
   std::vector<std::string> matches, names;
   for (const std::string& node : nodes) {
     names.push_back(last_name(node));
@@ -83,7 +85,7 @@ Result<std::string> find_node(const std::vector<MeshPart>& parts, const std::str
       names.push_back(part.also);
       if (part.also == name) matches.push_back(part.path);
     }
-  if (matches.size() == 1) return matches.front();
+  if (matches.size() == 1) return named(matches.front());
   if (matches.size() > 1)
     return bad_value(fmt::format("'{}' has {} nodes named '{}': say which by its path, such as '{}' or '{}'",
                                  file, matches.size(), name, matches[0], matches[1]));

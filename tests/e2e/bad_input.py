@@ -148,6 +148,22 @@ def test_generate_refuses_unknown_names_and_counts():
     expect_refused(palpate('generate', 'contacts'), 2, '--out')
 
 
+def test_a_part_that_is_named_as_another_is_numbered():
+    folder = Folder()
+    corner = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf -4 -2 -3\nf -4 -3 -1\nf -4 -1 -2\nf -3 -2 -1\n'
+    folder.write('numbers.obj', 'o Piston\n' + corner + 'o #1\n' + corner)
+    folder.write('bolts.obj', 'o Bolt 1\n' + corner + 'o Bolt 2\n' + corner)
+    tool = {'mesh': 'bolts.obj', 'units': 'mm', 'part': 'Bolt 1', 'without': ['Bolt 2']}
+    for number, part in (('#1', None), ('#2', '#1')):  # the second part is named as the first is numbered
+        scene = folder.save(tool={'mesh': 'numbers.obj', 'units': 'cm', 'part': number})
+        done = palpate('info', scene)
+        if part:
+            expect(done.code == 0 and f"part 'numbers.obj/{part}'" in done.out + done.err, done)
+        else:
+            expect_refused(done, 3, "a node named '#1' beside its part of that number")
+    refuse_scene(folder, '"without", in part \'Bolt 1\' alone', "no node named 'Bolt 2'", tool=tool)
+
+
 def test_a_directory_that_cannot_be_made():
     folder = Folder()
     folder.write('file', 'x')
