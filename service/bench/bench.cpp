@@ -197,7 +197,8 @@ class Benches {
     add_one_backend(*prepare, options_);
     add_clock(*prepare, options_, "wall, or cpu: time that this process itself ran (wall)");
     prepare->footer(
-        "The first start finds nothing in the cache and keeps what it makes; the second finds it. Shaders "
+        "The first start finds nothing in the cache and keeps what took a quarter of a second or more; the "
+        "second finds that. Shaders "
         "that the driver has compiled before are not compiled again.\n"
         "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
     measure(*prepare, bench_prepare);
