@@ -32,9 +32,8 @@ inline constexpr double kThinnestSheet = 1e-6, kThickestSheet = 1;
 /// the thickness (chosen, as mitres are cut off).
 ///
 /// Each part of `mesh` stays one: its triangles in their order, then backs in that order, then borders.
-/// `thickness_m` ≥ kThinnestSheet, coordinates within 1e9 m. `enclosure`, of
-/// `mesh`: open pieces that bound an inside stay as they are, too, and it knows the others for sheets;
-/// without one none does.
+/// `thickness_m` ≥ kThinnestSheet, coordinates within 1e9 m. `enclosure`, of `mesh`: open pieces that bound
+/// an inside stay as they are, too, and it knows the others for sheets; without one none stays.
 Thickened thicken(const Mesh& mesh, double thickness_m, Enclosure* enclosure = nullptr);
 
 }  // namespace palpate

@@ -198,8 +198,7 @@ class Benches {
     add_clock(*prepare, options_, "wall, or cpu: time that this process itself ran (wall)");
     prepare->footer(
         "The first start finds nothing in the cache and keeps what took a quarter of a second or more; the "
-        "second finds that. Shaders "
-        "that the driver has compiled before are not compiled again.\n"
+        "second finds that. Shaders that the driver has compiled before are not compiled again.\n"
         "Trees are built by a build with -DPALPATE_BENCH_PEERS=ON alone.");
     measure(*prepare, bench_prepare);
   }

@@ -33,10 +33,6 @@ std::string tile(const std::string& value, const std::string& what) {
   return "<div class=\"tile\"><b>" + value + "</b><span>" + what + "</span></div>";
 }
 
-Vec3 world(const SceneGeometry& geometry, const Int3& p) {
-  return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
-}
-
 double tool_size(const SceneGeometry& geometry) {
   const Int3 size = geometry.tool.box_max - geometry.tool.box_min;
   return geometry.lattice.step_m * std::max({size.x, size.y, size.z});
@@ -51,8 +47,8 @@ std::string pictures(const LoadedScene& scene, const PathMoment& moment, const s
   SectionView near;
   double gap = 0;
   if (moment.clearance.kind == Clearance::Kind::kApart) {
-    const Vec3 a = world(geometry, moment.clearance.on_static),
-               b = world(geometry, moment.clearance.on_mobile);
+    const Vec3 a = in_world(geometry, moment.clearance.on_static),
+               b = in_world(geometry, moment.clearance.on_mobile);
     gap = moment.clearance.steps * geometry.lattice.step_m;
     near = section_through(0.5 * (a + b), b - a, std::max(12 * gap, 4 * voxel));
     near.gap = true;
@@ -60,8 +56,8 @@ std::string pictures(const LoadedScene& scene, const PathMoment& moment, const s
     near.on_mobile = b;
     near.label = length_text(gap);
   } else {
-    near =
-        section_through(moment.where.value_or(world(geometry, pose->translation)), moment.facing, 4 * voxel);
+    near = section_through(moment.where.value_or(in_world(geometry, pose->translation)), moment.facing,
+                           4 * voxel);
     near.label = moment.depth_m ? length_text(*moment.depth_m) + " deep" : "";
   }
   turn_through_tool(

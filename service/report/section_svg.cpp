@@ -24,10 +24,6 @@ struct Line {
   double x[2], y[2];
 };
 
-Vec3 in_world(const SceneGeometry& geometry, const Int3& p) {
-  return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
-}
-
 /// Where a triangle crosses the plane, seen in the picture; empty: nowhere, or out of sight.
 std::optional<Line> cut(const Vec3 corners[3], const SectionView& view, const Vec3& normal) {
   double height[3];
@@ -75,6 +71,10 @@ double bar_length(double width_m) {
 }
 
 }  // namespace
+
+Vec3 in_world(const SceneGeometry& geometry, const Int3& p) {
+  return geometry.lattice.origin_m + geometry.lattice.step_m * Vec3(p);
+}
 
 SectionView section_through(const Vec3& middle, const Vec3& apart, double width_m) {
   SectionView view;

@@ -17,6 +17,9 @@ struct SectionView {
   std::string label;  ///< beside the mark
 };
 
+/// Where a lattice point of the world is, m.
+Vec3 in_world(const SceneGeometry& geometry, const Int3& p);
+
 /// A view about a point whose plane holds the way between two others and is upright where that is possible.
 /// `apart`: that way, 0: any.
 SectionView section_through(const Vec3& middle, const Vec3& apart, double width_m);

@@ -57,19 +57,19 @@ class PlanBench {
   /// leave out nothing else. The scene whose plan leaves out nothing was timed like all others: what it seems
   /// to gain or to lose is the measurement's own, and nothing smaller counts.
   void what_each_gives() {
-    double noise = 1, slow = 1;
+    double least = 1, most = 1;  // of ratios that tell nothing
     for (const Worth& worth : worths_)
       if (worth.left_out.empty()) {
-        noise = std::min(noise, worth.time.low);
-        slow = std::max(slow, worth.time.high);
+        least = std::min(least, worth.time.low);
+        most = std::max(most, worth.time.high);
       }
     facts_.findings.emplace_back("",
                                  fmt::format("Of two plans that are the same one took {:.3f} to {:.3f} of "
                                              "the other's time here: what lies between tells nothing.",
-                                             noise, slow));
+                                             least, most));
     std::string slower;
     for (const Worth& worth : worths_)
-      if (!worth.left_out.empty() && worth.time.low > slow)
+      if (!worth.left_out.empty() && worth.time.low > most)
         slower += fmt::format("{}'{}' ({:.3f} of the time, {:.3f} to {:.3f})", slower.empty() ? "" : ", ",
                               worth.scene, worth.time.median, worth.time.low, worth.time.high);
     if (!slower.empty()) facts_.findings.emplace_back("", "Slower with less: " + slower + ".");
@@ -79,7 +79,7 @@ class PlanBench {
       std::string alone, others;
       for (const Worth& worth : worths_) {
         if (worth.left_out.count(what) == 0) continue;
-        const bool sooner = worth.time.high < noise, less = worth.saved_mib >= 0.01;
+        const bool sooner = worth.time.high < least, less = worth.saved_mib >= 0.01;
         if (!sooner && !less) continue;
         std::string& list = worth.left_out.size() == 1 ? alone : others;
         list += fmt::format("{}'{}' ({}{}{})", list.empty() ? "" : ", ", worth.scene,
