@@ -259,6 +259,7 @@ std::string distrust_obj(std::string_view bytes) {
       if (count && line == "o" && !named.empty())
         return fmt::format(
             "has an object without a name in line {}; give it one, or its triangles join another", number);
+      if (count && line == "g") name = {};  // a group without a name is another one
       if (line.size() < 2 || !blank(line[1])) continue;
       if (line[0] == 'V' || line[0] == 'F')
         return fmt::format("has '{}' in line {}; OBJ's words are in small letters", line[0], number);

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,6 +17,8 @@ TEST_F(MeshImport, AnObjWithTwoObjectsOfOneNameIsRefused) {
               HasSubstr("object 'A' in line 1 and another one in line 11"));
   EXPECT_THAT(refused(write("group.obj", "o A 1\n" + a + "g B\n" + a + "o A 1\n" + a)),
               HasSubstr("object 'A 1' in line 1 and another one in line 11"));
+  EXPECT_THAT(refused(write("bare.obj", "g A\n" + a + "g\n" + a + "o A\n" + a)),
+              HasSubstr("object 'A' in line 1 and another one in line 11"));
   EXPECT_EQ(read(write("same.obj", "o A\ng A\n" + a + "o B\ng B\n" + a)).parts.size(), 2u);
   EXPECT_THAT(refused(write("none.obj", "o A\n" + a + "o\n" + a)),
               HasSubstr("an object without a name in line 6"));
