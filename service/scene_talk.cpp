@@ -158,14 +158,6 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
             : "the tool is not closed: " + vote +
                   doubt(geometry.mockup, {&contacts.cst, &contacts.est}, geometry.tool, to_tool, "mock-up"));
 
-  for (const auto& [report, body] :
-       {std::pair{&geometry.tool_report, "tool"}, {&geometry.mockup_report, "mock-up"}})
-    if (report->duplicate > 0)
-      out.bodies.push_back(
-          fmt::format("{} of {} triangles of the {} repeat others' three corners, and "
-                      "count once more in the force",
-                      report->duplicate, report->triangles, body));
-
   // The mean thickness, of a plate its own: what is thick on the whole may have thin walls, but one sentence
   // on every block would be read by nobody.
   const double force = scene.scene.device.max_force_n, least = least_wall_m(stiffness, force);

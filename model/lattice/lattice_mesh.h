@@ -15,6 +15,7 @@ enum TriangleFlag : std::uint8_t {
   kTriangleSheet = 2,      ///< of a part with winding 0 on both sides
   kTriangleTurned = 4,     ///< of a part that was inside out; vertices 1 and 2 are exchanged
   kTriangleThin = 8,       ///< of a thin piece: what lies in it says little, its own samples speak for it
+  kTriangleRepeated = 16,  ///< another with the same three corners speaks for it in the pressure field
 };
 
 /// One neighbour across a shared edge (the same two lattice vertices): neighbour id · 2 + (1 if the edge is
@@ -67,7 +68,7 @@ struct LatticeMesh {
   std::uint32_t patch_count = 0;
   std::vector<std::uint32_t>
       field_weight_q30;  ///< what the pressure field takes for sample_weight_q30: of small and thin
-                         ///< faces scaled, so that s²·w adds up to their area; 0 if collapsed
+                         ///< faces scaled, so that s²·w adds up to their area; 0 if collapsed or repeated
   std::vector<ExtraSample>
       extra_samples;  ///< of faces that the grid misses; ascending by triangle, which may have several
   std::vector<std::uint32_t>
@@ -84,6 +85,8 @@ struct LatticeMesh {
   }
   /// Whether snapping left the triangle no area; such a one meets nothing.
   bool collapsed(std::uint32_t triangle) const { return (flags[triangle] & kTriangleCollapsed) != 0; }
+  /// Whether another triangle speaks for it in the pressure field; in sets it is like any other.
+  bool repeated(std::uint32_t triangle) const { return (flags[triangle] & kTriangleRepeated) != 0; }
 };
 
 /// What import and snapping did to a body, for `info` and for the log.

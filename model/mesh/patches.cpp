@@ -398,8 +398,9 @@ void weigh_for_field(std::int32_t spacing, std::span<const Tip> tips, LatticeMes
   for (const Tip& tip : tips)
     for (const std::uint32_t t : tip.triangles) of_tip[t] = 1;
   const Numbering sides = number_joined(mesh, [&](std::uint32_t a, std::uint32_t b, bool smooth) {
-    return smooth && of_tip[a] == 0 && of_tip[b] == 0 && mesh.patch[a] == mesh.patch[b] &&
-           mesh.sample_axis[a] == mesh.sample_axis[b] && looks_back(mesh, a) == looks_back(mesh, b);
+    return smooth && of_tip[a] == 0 && of_tip[b] == 0 && !mesh.repeated(a) && !mesh.repeated(b) &&
+           mesh.patch[a] == mesh.patch[b] && mesh.sample_axis[a] == mesh.sample_axis[b] &&
+           looks_back(mesh, a) == looks_back(mesh, b);
   });
   std::vector<std::uint32_t> begin(std::size_t{sides.count} + 1, 0), order(count);
   for (const std::uint32_t side : sides.of)
@@ -415,7 +416,7 @@ void weigh_for_field(std::int32_t spacing, std::span<const Tip> tips, LatticeMes
   mesh.side_levels.clear();
   for (std::uint32_t s = 0; s < sides.count; ++s) {
     Side side{.triangles = std::span(order).subspan(begin[s], begin[s + 1] - begin[s])};
-    if (of_tip[side.triangles.front()] != 0) continue;
+    if (of_tip[side.triangles.front()] != 0 || mesh.repeated(side.triangles.front())) continue;
     measure(mesh, spacing, square, side);
     const double factor = is_narrow(square, side) ? 0 : factor_of(0, side);
     if (factor == 0) {

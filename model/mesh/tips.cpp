@@ -52,6 +52,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> round_corners(const Lattice
   std::vector<Normals> facing(mesh.vertices.size());
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   for (std::uint32_t t = 0; t < count; ++t) {
+    if (mesh.repeated(t)) continue;
     const Vec3 raw(raw_normal(mesh, t));
     const double size = glm::length(raw);
     for (const std::uint32_t vertex : mesh.triangles[t]) {
@@ -60,11 +61,13 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> round_corners(const Lattice
     }
   }
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
-  for (std::uint32_t t = 0; t < count; ++t)
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (mesh.repeated(t)) continue;
     for (const std::uint32_t vertex : mesh.triangles[t])
       if (const Normals& of = facing[vertex];
           glm::dot(of.sum, of.sum) < kCancels * kCancels * of.size * of.size)
         out.emplace_back(vertex, t);
+  }
   std::sort(out.begin(), out.end());
   return out;
 }

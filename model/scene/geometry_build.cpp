@@ -11,6 +11,7 @@
 #include "model/mesh/mass.h"
 #include "model/mesh/orientation.h"
 #include "model/mesh/patches.h"
+#include "model/mesh/repeated_faces.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -185,6 +186,7 @@ Result<LatticeMesh> build_lattice_mesh(const Mesh& mesh, const Lattice& lattice,
   if (stop()) return ended;
   make_normals(out);
   if (const Result<void> found = find_neighbours(edges, angle, out); !found) return found.error();
+  mark_repeated_faces(part_of, out);
   find_patches(part_of, out);
   return out;
 }
