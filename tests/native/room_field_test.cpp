@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "compute/scene/triangle_tree.h"
@@ -145,6 +147,29 @@ TEST(RoomField, PromisesNoMoreThanIsThereAndNearlyAsMuch) {
       ASSERT_GE(room, std::min(distance, 8 * cell) - (2 * kAcross + 1.0 / 16) * cell - 1);
     }
     EXPECT_GT(near, 200u);
+  }
+}
+
+/// Whoever first comes to a brick works it out, also where several do at once.
+TEST(RoomField, SaysTheSameToThreadsThatComeAtOnce) {
+  equivalence::Random random(9);
+  for (const Scene& scene : scenes()) {
+    std::vector<std::array<double, 3>> places;
+    for (int i = 0; i < 2000; ++i)
+      places.push_back(array_of(scene.near_surface(random, 8 * scene.field.cell_steps())));
+    std::vector<double> alone;
+    for (const auto& place : places) alone.push_back(scene.field.room_at(place));
+    for (int again = 0; again < 4; ++again) {
+      const RoomField fresh = RoomField::of(scene.geometry, scene.tree);
+      std::vector<std::vector<double>> told(4);
+      std::vector<std::thread> threads;
+      for (std::vector<double>& own : told)
+        threads.emplace_back([&] {
+          for (const auto& place : places) own.push_back(fresh.room_at(place));
+        });
+      for (std::thread& thread : threads) thread.join();
+      for (const std::vector<double>& own : told) EXPECT_EQ(own, alone);
+    }
   }
 }
 

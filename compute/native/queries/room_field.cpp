@@ -1,16 +1,14 @@
 #include "compute/native/queries/room_field.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <utility>
 
-#include "compute/native/prepare/touched_voxels.h"
 #include "compute/native/processor.h"
 #include "compute/scene/partition.h"
-#include "compute/scene/shares.h"
 #include "model/lattice/voxel_size.h"
 #include "model/scene/geometry_build.h"
 
@@ -30,74 +28,94 @@ constexpr std::size_t kWidth = 8;
 PALPATE_SECOND_CODE_END
 #endif
 
-constexpr std::int32_t kFar = 8;           // cells, beyond which a brick's cells are told no more
-constexpr float kPerCell = 16;             // what a byte counts
-constexpr std::size_t kBricksAShare = 64;  // chosen: a millisecond
-constexpr std::int32_t kWindow = 24;       // a brick and its neighbours, cells
-constexpr std::int32_t kCellsAVoxel = 4;   // chosen: with half of them a free pose takes three times as long
+constexpr std::int32_t kFar = 8;            // cells, beyond which a brick's cells are told no more
+constexpr std::uint32_t kPerCell = 16;      // what a byte counts
+constexpr float kACount = 1.0f / kPerCell;  // cells
+constexpr std::int32_t kWindow = 24;        // a brick and its neighbours, cells
+constexpr std::int32_t kCellsAVoxel = 4;    // chosen: with half of them a free pose takes three times as long
 constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 20;                       // chosen: 4 MiB of places
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26, kBytesATriangle = 64;  // of cells; chosen
 constexpr std::int32_t kNoBrick = 1 << 20;                                          // is touched
-constexpr std::uint64_t kCellBytes = 512;                                           // of a brick
+constexpr std::uint64_t kBrickBytes = 512 + sizeof(BrickBits);                      // of one that is near
+constexpr std::int32_t kNew = -(1 << 29),
+                       kTaken = 2 * kNew;  // what is far is a few million cells off at most
 
 /// What lies in cells that are `steps` apart along an axis is apart by so many cells at least.
 constexpr std::int32_t between(std::int32_t steps) { return steps == 0 ? 0 : std::abs(steps) - 1; }
 
-constexpr std::int16_t kNone = kFar * kFar;
+constexpr std::uint8_t kNone = kFar * kFar;
 
-using Row = std::array<std::int16_t, 8>;
+/// Squared cells of eight rows along x, the next y each: of a brick and one z.
+using Plane = std::array<std::uint8_t, 64>;
 
-/// Rows along x, y and z of a brick and its neighbours.
+/// A brick and its neighbours.
 struct Window {
-  std::array<std::uint32_t, kWindow * kWindow> rows{};  ///< row y + 24 z: a bit for each cell that is touched
-  std::array<Row, kWindow * kWindow> along_x{};
-  std::array<Row, 8 * kWindow> along_y{};
-  std::array<bool, kWindow> plane{};  ///< by z: whether any is
+  /// Row y + 24 z: a bit for each cell along x that is touched.
+  std::array<std::uint32_t, kWindow * kWindow> rows{};
+  std::array<std::uint8_t, 8 * kWindow * kWindow> along_x;  ///< of the rows, from the brick's own x
+  std::array<Plane, kWindow> along_y;                       ///< by z, from its own x and y
+  std::array<bool, kWindow> touched{};                      ///< by z: whether any is
 };
 
-void widen(const Row& from, std::int32_t step, Row& best) {
-  const auto more = static_cast<std::int16_t>(between(step) * between(step));
-  for (std::size_t x = 0; x < 8; ++x) best[x] = std::min(best[x], static_cast<std::int16_t>(from[x] + more));
+/// By byte: 255 where it has a bit, else 0.
+constexpr auto kSpread = [] {
+  std::array<std::uint64_t, 256> out{};
+  for (std::size_t byte = 0; byte < 256; ++byte)
+    for (std::size_t bit = 0; bit < 8; ++bit)
+      if ((byte >> bit & 1) != 0) out[byte] |= std::uint64_t{0xFF} << 8 * bit;
+  return out;
+}();
+static_assert(std::endian::native == std::endian::little);
+
+/// Of squared cells the cells, in sixteenths, rounded down.
+constexpr auto kRoots = [] {
+  std::array<std::uint8_t, kNone + 1> out{};
+  for (std::size_t square = 0; square < out.size(); ++square)
+    while ((out[square] + 1u) * (out[square] + 1u) <= kPerCell * kPerCell * square) ++out[square];
+  return out;
+}();
+
+/// Squared gaps along a row: of the brick's eight cells, which are the middle ones of 24.
+std::uint64_t gaps_along(std::uint32_t row) {
+  constexpr std::uint64_t kEach = 0x0101010101010101;
+  std::uint64_t out = kNone * kEach;
+  for (std::int32_t step = 1; step <= kFar; ++step) {
+    row |= row << 1 | row >> 1;  // what is no more than so many steps from a touched one
+    const std::int32_t here = between(step), next = between(step + 1);
+    out -= kSpread[row >> 8 & 0xFF] & static_cast<std::uint64_t>(next * next - here * here) * kEach;
+  }
+  return out;
+}
+
+void widen(const std::uint8_t* from, std::int32_t step, Plane& best) {
+  const auto more = static_cast<std::uint8_t>(between(step) * between(step));
+  for (std::size_t i = 0; i < best.size(); ++i)
+    best[i] = std::min(best[i], static_cast<std::uint8_t>(from[i] + more));
 }
 
 /// Gaps of a brick's cells to the nearest touched one, sixteenths of a cell, rounded down.
 void gaps_of(Window& w, std::array<std::uint8_t, 512>& out) {
-  for (std::size_t row = 0; row < w.rows.size(); ++row) {
-    if (row % kWindow == 0) w.plane[row / kWindow] = false;
-    if (w.rows[row] == 0) continue;
-    w.plane[row / kWindow] = true;
-    for (std::int32_t x = 0; x < 8; ++x) {
-      const std::uint32_t left = w.rows[row] & ((2u << (x + 8)) - 1), right = w.rows[row] >> (x + 8);
-      std::int32_t least = kFar + 1;
-      if (left != 0) least = std::min(least, x + 8 - (31 - std::countl_zero(left)));
-      if (right != 0) least = std::min(least, std::countr_zero(right));
-      w.along_x[row][static_cast<std::size_t>(x)] =
-          static_cast<std::int16_t>(between(least) * between(least));
+  for (std::size_t z = 0; z < kWindow; ++z) {
+    const std::uint32_t* const rows = &w.rows[kWindow * z];
+    w.touched[z] = std::any_of(rows, rows + kWindow, [](std::uint32_t row) { return row != 0; });
+    if (!w.touched[z]) continue;
+    for (std::size_t y = 0; y < kWindow; ++y) {
+      const std::uint64_t gaps = gaps_along(rows[y]);
+      std::memcpy(&w.along_x[8 * (y + kWindow * z)], &gaps, sizeof gaps);
     }
+    w.along_y[z].fill(kNone);
+    for (std::int32_t step = -kFar; step <= kFar; ++step)
+      widen(&w.along_x[8 * (static_cast<std::size_t>(8 + step) + kWindow * z)], step, w.along_y[z]);
   }
-  for (std::int32_t z = 0; z < kWindow; ++z) {
-    if (!w.plane[static_cast<std::size_t>(z)]) continue;
-    for (std::int32_t y = 0; y < 8; ++y) {
-      Row best;
-      best.fill(kNone);
-      for (std::int32_t step = -kFar; step <= kFar; ++step) {
-        const auto row = static_cast<std::size_t>(y + 8 + step + kWindow * z);
-        if (w.rows[row] != 0) widen(w.along_x[row], step, best);
-      }
-      w.along_y[static_cast<std::size_t>(y + 8 * z)] = best;
-    }
+  for (std::int32_t z = 0; z < 8; ++z) {
+    Plane best;
+    best.fill(kNone);
+    for (std::int32_t step = -kFar; step <= kFar; ++step)
+      if (const auto from = static_cast<std::size_t>(z + 8 + step); w.touched[from])
+        widen(w.along_y[from].data(), step, best);
+    for (std::size_t i = 0; i < best.size(); ++i)
+      out[static_cast<std::size_t>(z) * best.size() + i] = kRoots[best[i]];
   }
-  for (std::int32_t z = 0; z < 8; ++z)
-    for (std::int32_t y = 0; y < 8; ++y) {
-      Row best;
-      best.fill(kNone);
-      for (std::int32_t step = -kFar; step <= kFar; ++step)
-        if (w.plane[static_cast<std::size_t>(z + 8 + step)])
-          widen(w.along_y[static_cast<std::size_t>(y + 8 * (z + 8 + step))], step, best);
-      for (std::size_t x = 0; x < 8; ++x)
-        out[x + 8 * static_cast<std::size_t>(y + 8 * z)] =
-            static_cast<std::uint8_t>(kPerCell * std::sqrt(static_cast<float>(best[x])));
-    }
 }
 
 /// How many bricks each is from the nearest of those at 0, counted along the axis where it is most: chamfer.
@@ -136,7 +154,7 @@ std::int32_t finest_cell(const SceneGeometry& geometry) {
   return std::max(geometry.mockup_grid.size / kCellsAVoxel & ~1, kSmallestVoxel);
 }
 std::uint64_t most_bricks_near(const LatticeMesh& mesh) {
-  return (kMostBytes + kBytesATriangle * mesh.triangles.size()) / kCellBytes;
+  return (kMostBytes + kBytesATriangle * mesh.triangles.size()) / kBrickBytes;
 }
 
 }  // namespace
@@ -144,7 +162,7 @@ std::uint64_t most_bricks_near(const LatticeMesh& mesh) {
 std::uint64_t RoomField::most_bytes(const SceneGeometry& geometry) {
   const std::uint64_t bricks = std::min<std::uint64_t>(
       brick_count(grid_of(geometry.mockup, finest_cell(geometry)).bricks), kMostBricks);
-  return kCellBytes * std::min(bricks, most_bricks_near(geometry.mockup)) + sizeof(std::int32_t) * bricks +
+  return kBrickBytes * std::min(bricks, most_bricks_near(geometry.mockup)) + sizeof(std::int32_t) * bricks +
          sizeof(float) * DistanceLattice::kMostNodes;
 }
 
@@ -179,47 +197,63 @@ RoomField::RoomField(const LatticeMesh& mesh, const VoxelGrid& grid, std::vector
     : grid_(grid),
       per_cell_(1.0 / grid.size),
       place_(std::move(away)),
-      near_(count),
+      near_(std::make_unique_for_overwrite<Cells[]>(count)),
       lattice_(std::move(lattice)) {
+  std::int32_t number = 0;
+  for (std::int32_t& place : place_) place = place > 1 ? -8 * (place - 1) : number++;
+  touched_ = touched_voxels(mesh, grid, place_, count);
+  for (std::int32_t& place : place_)
+    if (place >= 0) place = kNew - place;
+}
+
+/// The cells of a brick that is near.
+void RoomField::work_out(std::size_t brick, Cells& out) const {
   const Int3& size = grid_.bricks;
-  std::vector<std::uint32_t> near;
-  near.reserve(count);
-  for (std::size_t brick = 0; brick < place_.size(); ++brick) {
-    if (place_[brick] > 1) {
-      place_[brick] = -8 * (place_[brick] - 1);
-      continue;
-    }
-    place_[brick] = static_cast<std::int32_t>(near.size());
-    near.push_back(static_cast<std::uint32_t>(brick));
-  }
-  const std::vector<BrickBits> bits = touched_voxels(mesh, grid, place_, count);
-  const auto fill = [&](std::uint32_t share) {
-    const auto window = std::make_unique<Window>();
-    for (std::size_t n = share * kBricksAShare; n < std::min((share + 1) * kBricksAShare, count); ++n) {
-      window->rows.fill(0);
-      const Int3 at = brick_at(size, near[n]);
-      for (std::int32_t k = 0; k < 27; ++k) {
-        const Int3 by(k % 3, k / 3 % 3, k / 9), b = at + by - 1;
-        if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= size.x || b.y >= size.y || b.z >= size.z) continue;
-        const std::int32_t place =
-            place_[static_cast<std::size_t>(b.x) +
-                   static_cast<std::size_t>(size.x) *
-                       (static_cast<std::size_t>(b.y) +
-                        static_cast<std::size_t>(size.y) * static_cast<std::size_t>(b.z))];
-        if (place < 0) continue;
-        for (std::int32_t z = 0; z < 8; ++z)
-          for (std::int32_t y = 0; y < 8; ++y) {
-            const std::uint32_t word =
-                bits[static_cast<std::size_t>(place)][static_cast<std::size_t>(y >> 2 | z << 1)];
-            window->rows[static_cast<std::size_t>(8 * by.y + y + kWindow * (8 * by.z + z))] |=
-                (word >> (8 * (y & 3)) & 0xFF) << (8 * by.x);
-          }
+  const Int3 at = brick_at(size, brick);
+  Window window;
+  for (std::int32_t k = 0; k < 27; ++k) {
+    const Int3 by(k % 3, k / 3 % 3, k / 9), b = at + by - 1;
+    if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= size.x || b.y >= size.y || b.z >= size.z) continue;
+    const std::size_t other =
+        static_cast<std::size_t>(b.x) +
+        static_cast<std::size_t>(size.x) * (static_cast<std::size_t>(b.y) +
+                                            static_cast<std::size_t>(size.y) * static_cast<std::size_t>(b.z));
+    const std::int32_t place = std::atomic_ref(place_[other]).load(std::memory_order_relaxed);
+    if (place < 0 && place > kNew) continue;
+    const auto number =
+        static_cast<std::size_t>(place >= 0 ? place : (place > kTaken ? kNew : kTaken) - place);
+    for (std::int32_t z = 0; z < 8; ++z)
+      for (std::int32_t y = 0; y < 8; ++y) {
+        const std::uint32_t word = touched_[number][static_cast<std::size_t>(y >> 2 | z << 1)];
+        window.rows[static_cast<std::size_t>(8 * by.y + y + kWindow * (8 * by.z + z))] |=
+            (word >> (8 * (y & 3)) & 0xFF) << (8 * by.x);
       }
-      gaps_of(*window, near_[n]);
-    }
-  };
-  in_shares(static_cast<std::uint32_t>((count + kBricksAShare - 1) / kBricksAShare), fill,
-            [](std::uint32_t) { return true; });
+  }
+  gaps_of(window, out);
+}
+
+/// Cells from one that is near or far to the nearest touched one, at least.
+inline float RoomField::gap(std::size_t brick, std::size_t cell) const {
+  const std::int32_t place = std::atomic_ref(place_[brick]).load(std::memory_order_acquire);
+  if (place >= 0) return kACount * static_cast<float>(near_[static_cast<std::size_t>(place)][cell]);
+  if (place > kNew) return static_cast<float>(-place);
+  return gap_of_new(brick, place, cell);
+}
+
+/// Nobody waits: while one thread works a brick out others do so for themselves.
+float RoomField::gap_of_new(std::size_t brick, std::int32_t place, std::size_t cell) const {
+  const std::atomic_ref shared(place_[brick]);
+  if (place > kTaken &&
+      shared.compare_exchange_strong(place, place - kNew + kTaken, std::memory_order_relaxed)) {
+    const std::int32_t number = kNew - place;
+    Cells& cells = near_[static_cast<std::size_t>(number)];
+    work_out(brick, cells);
+    shared.store(number, std::memory_order_release);
+    return kACount * static_cast<float>(cells[cell]);
+  }
+  Cells own;
+  work_out(brick, own);
+  return kACount * static_cast<float>(own[cell]);
 }
 
 RoomField::Turn RoomField::turn(const LatticePose& pose, double tool_radius) const {
@@ -250,15 +284,11 @@ void RoomField::rooms(const Turn& turn, const EightSpheres& spheres, EightFloats
 #endif
     plain::cells_of(turn, end, spheres, cell, squared.data());
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::int32_t x = cell[0][i], y = cell[1][i], z = cell[2][i],
-                       place = place_[static_cast<std::size_t>(
-                           (x >> 3) + grid_.bricks.x * ((y >> 3) + grid_.bricks.y * (z >> 3)))];
-    const float gap =
-        place >= 0
-            ? (1 / kPerCell) * static_cast<float>(near_[static_cast<std::size_t>(
-                                   place)][static_cast<std::size_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6)])
-            : static_cast<float>(-place);
-    squared[i] += gap * gap;
+    const std::int32_t x = cell[0][i], y = cell[1][i], z = cell[2][i];
+    const float cells =
+        gap(static_cast<std::size_t>((x >> 3) + grid_.bricks.x * ((y >> 3) + grid_.bricks.y * (z >> 3))),
+            static_cast<std::size_t>((x & 7) | (y & 7) << 3 | (z & 7) << 6));
+    squared[i] += cells * cells;
   }
 }
 
@@ -296,15 +326,12 @@ double RoomField::room_at(const std::array<double, 3>& point) const {
     brick[k] = number >> 3;
     cell[k] = number & 7;
   }
-  const std::int32_t place =
-      place_[brick[0] + static_cast<std::size_t>(grid_.bricks.x) *
-                            (brick[1] + static_cast<std::size_t>(grid_.bricks.y) * brick[2])];
-  const double gap =
-      place >= 0
-          ? (1.0 / kPerCell) * near_[static_cast<std::size_t>(place)][cell[0] | cell[1] << 3 | cell[2] << 6]
-          : -static_cast<double>(place);
-  const double room = (away == 0 ? gap : std::sqrt(away + gap * gap)) * grid_.size;
-  if (away == 0 && place >= 0) return room;
+  const std::size_t number = brick[0] + static_cast<std::size_t>(grid_.bricks.x) *
+                                            (brick[1] + static_cast<std::size_t>(grid_.bricks.y) * brick[2]);
+  const double cells = gap(number, cell[0] | cell[1] << 3 | cell[2] << 6);
+  const double room = (away == 0 ? cells : std::sqrt(away + cells * cells)) * grid_.size;
+  const std::int32_t place = std::atomic_ref(place_[number]).load(std::memory_order_relaxed);
+  if (away == 0 && (place >= 0 || place <= kNew)) return room;
   return std::max(room, std::sqrt(lattice_.squared(point)));
 }
 

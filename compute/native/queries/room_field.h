@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "compute/native/prepare/touched_voxels.h"
 #include "compute/native/queries/distance_lattice.h"
 #include "compute/native/queries/tool_spheres.h"
 #include "compute/scene/exact.h"
@@ -15,7 +17,8 @@ namespace palpate::native {
 
 /// How far what lies in a cell of a grid is from a body's surface at least: a number for each cell of the
 /// bricks near it, and one for each brick elsewhere; further off a coarse lattice says more. Made once a
-/// scene, read by any number of threads.
+/// scene, read by any number of threads. A brick's cells are worked out by whoever first comes there: a
+/// path or a few poses see few of them.
 class RoomField {
  public:
   /// Of a scene's mock-up: in cells of a quarter of its voxel, or of twice, four times … that where they
@@ -59,8 +62,8 @@ class RoomField {
   double detail_steps() const;
 
   std::uint64_t bytes() const {
-    return sizeof place_[0] * std::uint64_t{place_.size()} + sizeof near_[0] * std::uint64_t{near_.size()} +
-           lattice_.bytes();
+    return sizeof place_[0] * std::uint64_t{place_.size()} +
+           (sizeof(Cells) + sizeof touched_[0]) * std::uint64_t{touched_.size()} + lattice_.bytes();
   }
 
  private:
@@ -70,10 +73,17 @@ class RoomField {
             DistanceLattice lattice);
   using Cells = std::array<std::uint8_t, 512>;  ///< of a brick: sixteenths of a cell, x + 8 y + 64 z
 
+  float gap(std::size_t brick, std::size_t cell) const;
+  float gap_of_new(std::size_t brick, std::int32_t place, std::size_t cell) const;
+  void work_out(std::size_t brick, Cells& out) const;
+
   VoxelGrid grid_{};
-  double per_cell_ = 0;              ///< cells a step
-  std::vector<std::int32_t> place_;  ///< by brick: in `near_`; below 0: minus so many cells
-  std::vector<Cells> near_;
+  double per_cell_ = 0;  ///< cells a step
+  /// By brick: where its cells are in `near_`; below 0 minus so many cells, or kNew, or kTaken, less its
+  /// place there. All threads change it from kNew to kTaken to its place.
+  mutable std::vector<std::int32_t> place_;
+  std::vector<BrickBits> touched_;  ///< of the bricks in `near_`
+  std::unique_ptr<Cells[]> near_;   ///< of whatever has a place
   DistanceLattice lattice_;
 };
 
