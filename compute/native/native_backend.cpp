@@ -132,7 +132,8 @@ class NativeBackend final : public CollisionBackend, public SharedBackend {
 
   /// With what the planner's questions read, too: who asks the first of them has been told.
   std::uint64_t preparation_bytes(const SceneGeometry& geometry, const Plan& plan) const override {
-    return estimate_preparation(geometry, plan) + native::PairTrees::most_bytes(geometry);
+    return estimate_preparation(geometry, plan) + native::most_sample_bytes(geometry) +
+           native::PairTrees::most_bytes(geometry);
   }
 
   Result<void> query(const LatticePose& pose, const Ignored* ignored, Contacts& out) override {

@@ -70,6 +70,12 @@ def test_a_long_bench_of_a_force_ends_when_asked():
     expect(code == 1 and 'interrupted' in said and not (folder / 'out').exists(), said)
 
 
+def test_a_bench_of_stability_ends_when_asked():
+    folder = Folder()
+    code, said = at_terminal('bench', 'stability', folder.save(), '--out', folder / 'out', until=b'formulas')
+    expect(code == 1 and 'interrupted' in said and not (folder / 'out').exists(), said)
+
+
 def test_a_query_at_a_terminal_is_for_people_and_elsewhere_for_programs():
     folder = Folder()
     scene, pose = pressed(folder)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compute/native/native_backend.h"
+#include "compute/native/prepare/scene.h"
 #include "compute/scene/samples.h"
 #include "cpu_ref/ref_backend.h"
 #include "model/generate.h"
@@ -162,6 +163,24 @@ TEST(Native, AnswersWhereAVoxelListsMoreThanItsSamplesCanTellApart) {
   ASSERT_TRUE(ref->query(pose, nullptr, expected));
   EXPECT_TRUE(found.contact);
   EXPECT_EQ(first_difference(found, expected), "");
+}
+
+/// A plate's two faces have far more samples than triangles; a ball's triangles are about as large as voxels.
+TEST(Native, ForetellsWhatListsOfSamplesTake) {
+  for (const Mesh& mockup : {solids::box(Vec3(0), Vec3(0.3, 0.3, 0.01)), solids::sphere_of(0.1, 20'000)})
+    for (const double voxel : {0.001, 0.004}) {
+      GeometrySettings settings;
+      settings.voxel_size_m = voxel;
+      const auto geometry = build_geometry(mockup, solids::box(Vec3(0), Vec3(0.02)), settings);
+      ASSERT_TRUE(geometry);
+      const auto scene = native::prepare_scene(*geometry, Plan{}, {});
+      ASSERT_TRUE(scene);
+      ASSERT_NE(scene->samples, nullptr);
+      const std::uint64_t foretold = native::most_sample_bytes(*geometry), kept = scene->samples->bytes();
+      EXPECT_LE(kept, foretold);
+      // Words are there twice while they are listed, and leaning faces have fewer samples, at least 1 / √3.
+      EXPECT_GE(3 * kept, foretold);
+    }
 }
 
 #ifndef PALPATE_SANITIZED                       // sanitizers take memory of their own

@@ -63,6 +63,21 @@ std::uint64_t Scene::bytes() const {
          (search ? search->bytes() : 0) + open.bytes();
 }
 
+std::uint64_t most_sample_bytes(const SceneGeometry& geometry) {
+  constexpr double kMoreSamples = 1.1,
+                   kMoreVoxels = 1.5;  // over what areas let expect, as of a scene's lists
+  const double voxel = geometry.mockup_grid.size, spacing = geometry.sample_spacing,
+               area = geometry.mockup_surface.area,
+               words = geometry.mockup_grid.size > VoxelSamples::kNarrowVoxel ? 8 : 4,
+               samples = kMoreSamples * area / (spacing * spacing),
+               corners = static_cast<double>(geometry.mockup.triangles.size());
+  // While they are made by entry the words alone; then these, and points with what belongs to them.
+  const double listed = words * samples;
+  if (listed > static_cast<double>(kMostSampleBytes)) return kMostSampleBytes;  // and none is kept
+  return static_cast<std::uint64_t>(2 * listed + 6 * (samples + corners) + 2 * corners +
+                                    sizeof(VoxelSamples::Begin) * kMoreVoxels * area / (voxel * voxel));
+}
+
 Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, const Progress& progress) {
   Scene out;
   const char* what = "voxel lists";

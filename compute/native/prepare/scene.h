@@ -31,6 +31,10 @@ struct Scene {
   void know(const SceneGeometry& geometry);
 };
 
+/// What listing the mock-up's samples takes at most, and keeping them, known before: of large faces they are
+/// most of a scene.
+std::uint64_t most_sample_bytes(const SceneGeometry& geometry);
+
 /// Makes all of it, on all cores. Errors: a grid that is too large (kBadValue), cancelled.
 Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, const Progress& progress);
 

@@ -19,6 +19,8 @@ namespace {
 constexpr double kLow = 10, kHigh = 20000;  // N/m: where K is looked for
 constexpr int kTicks = 20000;
 
+Error cut_short() { return {ErrorCode::kInternal, "interrupted"}; }
+
 const char* name_of(LawKind kind) {
   return kind == LawKind::kHold ? "hold" : kind == LawKind::kPrinted ? "printed" : "corrected";
 }
@@ -94,14 +96,17 @@ Chart lines(std::string title, std::string x_title, std::string unit, bool log_x
 constexpr LawKind kLaws[] = {LawKind::kHold, LawKind::kPrinted, LawKind::kCorrected};
 
 /// Table and curves: one thing changed at a time.
-void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& charts) {
+Result<void> measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& charts) {
   const auto sweep = [&](const std::string& model, const char* x_title, const std::vector<double>& values,
                          auto set) {
+    if (interrupted()) return;
+    console.step("formulas: " + model);
     Chart chart = lines("Highest stable K, " + model, x_title, "N/m", true, true);
     for (const LawKind law : kLaws) {
       Chart::Series series{name_of(law), {}, {}},
           expected{std::string(name_of(law)) + ", theory", {}, {}, true};
       for (const double value : values) {
+        if (interrupted()) return;
         Cell cell{.law = law};
         set(cell, value);
         const double k = critical(cell), known = cell.pushes_only ? std::nan("") : theory(cell);
@@ -113,7 +118,6 @@ void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& c
       if (!expected.x.empty()) chart.series.push_back(std::move(expected));
     }
     charts.push_back(std::move(chart));
-    console.step(model);
   };
   const std::vector<double> delays{1, 2, 3, 5, 10, 20, 50};
   sweep("linear", "age of results c, ticks (n = c)", delays,
@@ -140,13 +144,17 @@ void measure_formulas(Console& console, BenchTable& table, std::vector<Chart>& c
       cell.delivery = kind;
       cell.pushes_only = true;
     });
+  if (interrupted()) return cut_short();
+  return {};
 }
 
 /// Two things changed at a time: age of the results against n, and against the mass.
-void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& charts) {
+Result<void> measure_maps(Console& console, BenchTable& table, std::vector<Chart>& charts) {
   const std::vector<int> delays{1, 2, 5, 10, 20, 50};
   const auto map = [&](const std::string& model, LawKind law, const char* y_title,
                        const std::vector<double>& values, auto set) {
+    if (interrupted()) return;
+    console.step(fmt::format("map: {}, {}", model, name_of(law)));
     Chart chart = lines(fmt::format("Highest stable K, {}, {} ({:g}: at most)", model, name_of(law), kLow),
                         "age of results c, ticks", "N/m", false, false);
     chart.map = true;
@@ -157,6 +165,7 @@ void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& chart
     for (const double value : values) {
       Chart::Series row{fmt::format("{:g}", value), {}, {}};
       for (const int delay : delays) {
+        if (interrupted()) return;
         Cell cell{.law = law, .delay = delay, .n = delay};
         set(cell, value);
         row.y.push_back(critical(cell));
@@ -166,7 +175,6 @@ void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& chart
       chart.series.push_back(std::move(row));
     }
     charts.push_back(std::move(chart));
-    console.step(fmt::format("map: {}, {}", model, name_of(law)));
   };
   for (const LawKind law : {LawKind::kPrinted, LawKind::kCorrected}) {
     map("linear", law, "n, ticks", {1, 2, 5, 10, 20, 50},
@@ -174,6 +182,8 @@ void measure_maps(Console& console, BenchTable& table, std::vector<Chart>& chart
     map("unilateral", law, "mass, kg (n = c)", {0.02, 0.05, 0.2, 0.5, 2, 5},
         [](Cell& cell, double m) { cell.mass = m, cell.pushes_only = true; });
   }
+  if (interrupted()) return cut_short();
+  return {};
 }
 
 SimulatedMaker simulated(const Parts& parts) {
@@ -239,6 +249,7 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
     chart.labels.push_back(what.name);
     for (const int delay : {1, 5, 10})
       for (std::size_t i = 0; i < 3; ++i) {
+        if (interrupted()) return cut_short();
         const double k = highest_stable_body(make, what, kLaws[i], delay);
         // The printed law pulls by a scalar K along every way, so no limit of one contact is its own.
         const double expected =
@@ -253,11 +264,14 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
   }
   const BodyCase plate = body_cases().front();
   for (const int delay : {1, 5, 10})
-    for (const LawKind law : kLaws)
+    for (const LawKind law : kLaws) {
+      if (interrupted()) return cut_short();
       row("body: plate, dropped", law, delay, plate.device, plate.pads.size(),
           highest_stable_body(make, plate, law, delay, true), std::nan(""));
+    }
   const double limit = 4 * body_theory(plate.device, plate.pads, 0);
   for (const double spring : {1800.0, 3000.0, 4000.0, 10000.0}) {
+    if (interrupted()) return cut_short();
     const double k = highest_stable_body(make, plate, LawKind::kCorrected, 10, false, {spring, 8});
     row(fmt::format("body: plate, virtual coupling of {:.0f} N/m", spring), LawKind::kCorrected, 10,
         plate.device, plate.pads.size(), k,
@@ -319,10 +333,11 @@ Result<void> measure_scenes(const BenchOptions& options, const Parts& parts, Con
       auto device = parts.make_device("simulated", loaded.scene, loaded.geometry.tool_gc_m, {});
       if (!device) return device.error();
       console.step(fmt::format("{}, {}", file, own ? "as it is" : "the chapter's method"));
-      const auto summary =
-          run_session(loaded, *(*prepared)->backend, **device, {.pace = Pace::kAsap}, &watch[own]);
+      const auto summary = run_session(loaded, *(*prepared)->backend, **device,
+                                       {.pace = Pace::kAsap, .stop = &interrupt_flag()}, &watch[own]);
       if (!summary) return summary.error();
       if (summary->failure) return *summary->failure;
+      if (summary->stopped) return cut_short();
       force.series[own].y.push_back(watch[own].force);
       torque.series[own].y.push_back(watch[own].torque);
     }
@@ -347,6 +362,7 @@ Result<void> measure_jumps(const Parts& parts, Console& console, BenchFacts& fac
     console.step("jumps: " + what.name);
     JumpStatistics found[2];
     for (const bool refined : {false, true}) {
+      if (interrupted()) return cut_short();
       const Profile profile = refined ? Profile::kRefined : Profile::kPaper;
       auto prepared = PreparedCase::make(what, profile, engine_of(parts, profile));
       if (!prepared) return prepared.error();
@@ -392,6 +408,7 @@ void measure_energy(BenchTable&, BenchFacts& facts) {
 }  // namespace
 
 Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
+  catch_interrupts();
   Console console;
   BenchFacts facts{.command = "stability",
                    .device = "cpu (profile refined) and ref (paper) on the processor, in virtual time",
@@ -400,8 +417,8 @@ Result<void> bench_stability(const BenchOptions& options, const Parts& parts) {
                     "areas", "critical_k", "theory_k"},
                    {}};
   std::vector<Chart> charts;
-  measure_formulas(console, table, charts);
-  measure_maps(console, table, charts);
+  if (auto done = measure_formulas(console, table, charts); !done) return done;
+  if (auto done = measure_maps(console, table, charts); !done) return done;
   Chart queries =
       lines("Highest stable K over the real collision query, results 10 ms old", "", "N/m", false, true);
   if (auto done = measure_queries(parts, console, table, queries); !done) return done;

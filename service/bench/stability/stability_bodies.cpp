@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/lattice/rotation.h"
+#include "service/cli/console.h"
 
 namespace palpate {
 namespace {
@@ -131,6 +132,7 @@ Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& wh
   loop.at_rest = {start.position + start.rotation * gc_tool, start.rotation};
   loop.contact = [&](const Pose& gc, LawResult& out) {
     const Pose tool{gc.position - gc.rotation * gc_tool, gc.rotation};
+    if (failed && interrupted()) failed = Error{ErrorCode::kInternal, "interrupted"};
     if (failed) failed = prepared.ask(tool, out);
     if (!failed || coupled || !out.field) return;
     const Result<Felt> felt = prepared.feel(tool);
