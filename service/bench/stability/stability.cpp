@@ -101,12 +101,14 @@ Result<void> measure_formulas(Console& console, BenchTable& table, std::vector<C
                          auto set) {
     if (interrupted()) return;
     console.step("formulas: " + model);
+    const double all = static_cast<double>(std::size(kLaws) * values.size());
+    double done = 0;
     Chart chart = lines("Highest stable K, " + model, x_title, "N/m", true, true);
     for (const LawKind law : kLaws) {
       Chart::Series series{name_of(law), {}, {}},
           expected{std::string(name_of(law)) + ", theory", {}, {}, true};
       for (const double value : values) {
-        if (interrupted()) return;
+        if (!console.progress("the highest stable K", done++ / all)) return;
         Cell cell{.law = law};
         set(cell, value);
         const double k = critical(cell), known = cell.pushes_only ? std::nan("") : theory(cell);
@@ -155,6 +157,8 @@ Result<void> measure_maps(Console& console, BenchTable& table, std::vector<Chart
                        const std::vector<double>& values, auto set) {
     if (interrupted()) return;
     console.step(fmt::format("map: {}, {}", model, name_of(law)));
+    const double all = static_cast<double>(values.size() * delays.size());
+    double done = 0;
     Chart chart = lines(fmt::format("Highest stable K, {}, {} ({:g}: at most)", model, name_of(law), kLow),
                         "age of results c, ticks", "N/m", false, false);
     chart.map = true;
@@ -165,7 +169,7 @@ Result<void> measure_maps(Console& console, BenchTable& table, std::vector<Chart
     for (const double value : values) {
       Chart::Series row{fmt::format("{:g}", value), {}, {}};
       for (const int delay : delays) {
-        if (interrupted()) return;
+        if (!console.progress("the highest stable K", done++ / all)) return;
         Cell cell{.law = law, .delay = delay, .n = delay};
         set(cell, value);
         row.y.push_back(critical(cell));
@@ -220,6 +224,7 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
     add_cell(table, "query: " + what.name, {.law = LawKind::kCorrected, .delay = 0, .areas = areas}, *none,
              *none);
     for (std::size_t i = 0; i < 3; ++i) {
+      if (!console.progress("the highest stable K", 0.25 * static_cast<double>(i + 1))) return cut_short();
       const auto k = highest_stable_body_query(make, what, **prepared, bare_device(), kLaws[i], 10);
       if (!k) return k.error();
       add_cell(table, "query: " + what.name, {.law = kLaws[i], .delay = 10, .n = 10, .areas = areas}, *k,
@@ -247,9 +252,10 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
   for (const BodyCase& what : body_cases()) {
     console.step("six degrees of freedom: " + what.name);
     chart.labels.push_back(what.name);
+    double done = 0;
     for (const int delay : {1, 5, 10})
       for (std::size_t i = 0; i < 3; ++i) {
-        if (interrupted()) return cut_short();
+        if (!console.progress("the highest stable K", done++ / 9)) return cut_short();
         const double k = highest_stable_body(make, what, kLaws[i], delay);
         // The printed law pulls by a scalar K along every way, so no limit of one contact is its own.
         const double expected =
