@@ -364,9 +364,9 @@ void add_info_command(CLI::App& app, InfoOptions& info, const Parts& parts, Resu
 void add_generate_command(CLI::App& app, GenerateOptions& generate, Result<void>& outcome) {
   CLI::App* generate_app =
       app.add_subcommand("generate", "make one of the chapter's scenes: contacts or disassembly");
-  generate_app->add_option("name", generate.name, "contacts (section 4.1) or disassembly (section 4.2)")
+  generate_app->add_option("name", generate.name, "the scene of section 4.1 or of section 4.2")
       ->required()
-      ->type_name("NAME");
+      ->type_name("contacts|disassembly");
   generate_app
       ->add_option("--triangles", generate.triangles,
                    "of the mock-up, 1,000 to 10,000,000; default the chapter's 25,000 or 100,000")

@@ -131,8 +131,10 @@ std::string bash_script(const std::vector<CommandLine>& commands) {
       const std::vector<std::string> above(command.path.begin(), command.path.end() - 1);
       paths += fmt::format("      '{} {}') path='{}' ;;\n", joined(above, " "), command.path.back(), path);
     }
-    offers += fmt::format("    '{}') commands='{}' options='{}' ;;\n", path,
-                          joined(names_of(command.below), " "), joined(all_names(command.options), " "));
+    const OptionLine own = command.positionals.empty() ? OptionLine{} : command.positionals.front();
+    offers += fmt::format("    '{}') commands='{}' options='{}' words='{}' files={} ;;\n", path,
+                          joined(names_of(command.below), " "), joined(all_names(command.options), " "),
+                          joined(own.words, " "), own.takes == Takes::kFile ? "yes" : "");
     for (const OptionLine& option : command.options) {
       if (option.takes == Takes::kNothing) continue;
       std::vector<std::string> cases;
@@ -148,7 +150,8 @@ std::string bash_script(const std::vector<CommandLine>& commands) {
   }
   return "# bash completion of palpate; made by `palpate completions bash`\n"
          "_palpate() {\n"
-         "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} path= commands= options= i\n"
+         "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} path= commands= options= "
+         "words= files= i\n"
          "  local IFS=$' \\t\\n'\n"
          "  for ((i = 1; i < COMP_CWORD; ++i)); do\n"
          "    case \"$path ${COMP_WORDS[i]}\" in\n" +
@@ -162,8 +165,9 @@ std::string bash_script(const std::vector<CommandLine>& commands) {
          values +
          "  esac\n"
          "  if [[ $cur == -* ]]; then COMPREPLY=($(compgen -W \"$options\" -- \"$cur\"))\n"
-         "  elif [[ -n $commands ]]; then COMPREPLY=($(compgen -W \"$commands\" -- \"$cur\"))\n"
-         "  else IFS=$'\\n'; COMPREPLY=($(compgen -f -- \"$cur\"))\n"
+         "  elif [[ -n $commands$words ]]; then COMPREPLY=($(compgen -W \"$commands $words\" -- \"$cur\"))\n"
+         "  elif [[ -n $files ]]; then IFS=$'\\n'; COMPREPLY=($(compgen -f -- \"$cur\"))\n"
+         "  else COMPREPLY=()\n"
          "  fi\n"
          "}\n"
          "complete -o filenames -F _palpate palpate\n";
@@ -263,6 +267,9 @@ std::string fish_script(const std::vector<CommandLine>& commands) {
         out += " -x";
       out += " -d " + quoted_for_fish(option.help) + "\n";
     }
+    for (const OptionLine& positional : command.positionals)
+      if (positional.takes == Takes::kWords)
+        out += start + " -f -a " + quoted_for_fish(joined(positional.words, " ")) + "\n";
   }
   return out;
 }

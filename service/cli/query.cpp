@@ -145,7 +145,7 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
       print(first, answer.total_us, answer.contacts, answer.response);
     }
     if (auto done = print_text(text); !done) return done;
-    if (interrupted())
+    if (interrupted() && first + count < poses.size())
       return Error{ErrorCode::kInternal,
                    fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
   }

@@ -46,9 +46,10 @@ class RunWatch : public RunObserver {
       console_.live(fmt::format("{:7.2f} s  {}", tick.time_s, tick.guidance));
     else
       console_.live(
-          fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  {} areas  frame {:.2f} ms  result {} ticks old  {}",
-                      tick.time_s, glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_,
-                      frame_us_ / 1000, tick.result_age_ticks,
+          fmt::format("{:7.2f} s  {:5.2f} N  {:6.3f} N·m  areas {}  frame {:.2f} ms  {}  {}", tick.time_s,
+                      glm::length(tick.sent.force), glm::length(tick.sent.torque), areas_, frame_us_ / 1000,
+                      tick.result_age_ticks < 0 ? "no result yet"
+                                                : fmt::format("ticks since result {}", tick.result_age_ticks),
                       tick.stage > 0 ? "stage " + stage_text(tick.stage, scene_.stage_names) : ""));
     return series_.on_tick(tick);
   }

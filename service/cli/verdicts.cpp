@@ -66,7 +66,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
         return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
     }
     if (auto done = print_text(text); !done) return done;
-    if (interrupted())
+    if (interrupted() && first + count < poses.size())
       return Error{ErrorCode::kInternal,
                    fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
   }

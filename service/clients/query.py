@@ -7,6 +7,8 @@ import json
 import sys
 import urllib.request
 
+if len(sys.argv) != 3:
+    sys.exit(__doc__)
 server, path = sys.argv[1].rstrip('/'), sys.argv[2]
 
 

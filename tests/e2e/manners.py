@@ -444,6 +444,9 @@ def test_bash_completes_commands_options_and_their_words():
         completed('palpate', 'run', 'scene.json', '--backend', '') == ['auto', 'gpu', 'cpu', 'ref'], 'words'
     )
     expect(completed('palpate', 'run', '--pace', 'as') == ['asap'], 'words')
+    expect(completed('palpate', 'generate', '') == ['contacts', 'disassembly'], 'words of an argument')
+    expect(completed('palpate', 'completions', 'z') == ['zsh'], 'words of an argument')
+    expect(completed('palpate', 'man', '') == [], 'an argument that is neither words nor a file')
     expect(
         'latency' in completed('palpate', 'bench', '')
         and completed('palpate', 'bench', 'latency', '--clock', 'c') == ['cpu'],

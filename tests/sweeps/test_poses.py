@@ -72,6 +72,7 @@ def test_a_grid_of_a_hundred_million_poses_takes_the_memory_of_a_chunk():
         ({'x': (0, 1, 1)}, 'axis x'),
         ({'y': (0, 1, 2.5)}, 'axis y'),
         ({'z': float('nan')}, 'finite'),
+        ({'rx': (0.0, float('nan'), 3)}, 'finite'),
         ({'rx': 'a'}, 'axis rx'),
         ({'ry': []}, 'axis ry'),
         ({'rz': (0, 1, 10**6 + 1)}, '1000001 angles'),

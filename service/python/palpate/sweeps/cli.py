@@ -44,9 +44,10 @@ def main(arguments=None):
         print('palpate-sweep: stopped; the same command goes on from what is done', file=sys.stderr)
         return 130
     chunks = 'chunk' if swept.chunks == 1 else 'chunks'
+    rate = 'nothing was left to ask' if swept.earlier == swept.chunks else f'{swept.rate:,.0f} poses a second'
     print(
         f'{swept.path}: {swept.poses:,} poses in {swept.chunks:,} {chunks}, {swept.earlier:,} of them from'
-        f' before, {swept.twice:,} answered by two engines; {swept.rate:,.0f} poses a second\nhash'
+        f' before, {swept.twice:,} answered by two engines; {rate}\nhash'
         f' {swept.hash}'
     )
     return 0
@@ -117,7 +118,7 @@ def _poses(parser, asked):
 
     axes = {name: value for name in Grid.NAMES if (value := getattr(asked, name)) is not None}
     if sum((bool(axes), asked.poses is not None, asked.function is not None)) != 1:
-        parser.error('say which poses: axes (--x …), --poses or --function')
+        parser.error('say which poses by one of axes (--x …), --poses and --function')
     if axes:
         return Grid(**axes), None
     if asked.poses is not None:

@@ -178,6 +178,8 @@ def _axis(name, axis):
     try:
         if isinstance(axis, tuple):
             first, last, count = axis
+            if not numpy.isfinite((float(first), float(last), float(count))).all():
+                refuse(f'axis {name}: every value is finite; it is {axis!r}')
             made, numbers = _Range(float(first), float(last), int(count)), (first, last)
             if count != int(count) or count < 1 or (count == 1 and first != last):
                 refuse(
