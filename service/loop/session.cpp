@@ -404,8 +404,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
          " frames took longer than the watchdog's " + number(run.scene.control.watchdog_ms) +
          " ms; the slowest, " + number(std::round(slowest.us / 100) / 10) + " ms at tick " +
          std::to_string(slowest.sample.tick) + " with the tool at " + position_text(slowest.sample.pose) +
-         (*slowest.stage ? std::string(", was ") + number(std::round(slowest.stage_us / 100) / 10) +
-                               " ms in stage " + slowest.stage
+         (*slowest.stage ? std::string(", spent most in stage ") + slowest.stage + ", " +
+                               number(std::round(slowest.stage_us / 100) / 10) + " ms"
                          : std::string()));
   if (out.coarse_frames > 0)
     note(std::to_string(out.coarse_frames) + " of " + std::to_string(out.frames) +

@@ -36,4 +36,9 @@ def local(workers, gpu):
         local_directory=folder,
         silence_logs=logging.ERROR,
     ) as cluster, Client(cluster) as client:
-        yield client, shares(workers, processors)
+        try:
+            yield client, shares(workers, processors)
+        finally:
+            # A busy machine may be slow to take them down; by then all is written.
+            for name in ('distributed', 'tornado', 'asyncio'):
+                logging.getLogger(name).setLevel(logging.CRITICAL)
