@@ -104,6 +104,15 @@ AccessRules access_rules(const ListenOptions& listen, const std::vector<std::str
   return rules;
 }
 
+/// Says "stopped" when all that may say something is gone: it stands behind the log, before everything else.
+struct LastWord {
+  Log& log;
+  bool wanted = false;
+  ~LastWord() {
+    if (wanted) log.info("stopped", nlohmann::ordered_json::object());
+  }
+};
+
 }  // namespace
 
 Result<void> serve(const ServeOptions& options, const Parts& parts) {
@@ -138,6 +147,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   // In the order in which they may refer to each other; destroyed from the last to the first.
   const bool plain = options.log == "plain" || (options.log.empty() && ::isatty(STDERR_FILENO) == 1);
   Log log(plain ? Log::Form::kPlain : Log::Form::kJson, Console::quiet());
+  LastWord last_word{log};
   Metrics metrics;
   const ServerLimits& limits = options.limits;
   const AccessRules rules = access_rules(*listen, options.hosts, std::move(*token));
@@ -186,7 +196,7 @@ Result<void> serve(const ServeOptions& options, const Parts& parts) {
   sessions.stop_all();  // zero force before anything else
   store.cancel();
   listener.stop(kGrace);
-  log.info("stopped", nlohmann::ordered_json::object());
+  last_word.wanted = true;
   return {};
 }
 

@@ -695,6 +695,18 @@ def test_sigterm_in_mid_session_sends_zero_force_tells_clients_and_exits_0():
     expect(summary['ticks'] == len(rows) - 1 > 0 and 'failure' not in summary, summary)
 
 
+def test_stopped_is_the_last_word_also_of_a_scene_that_is_being_read():
+    folder, arguments = rooted()
+    folder.write('large.stl', stl(sphere(0.03, 160)))
+    scene = folder.save(static=[{'mesh': 'large.stl', 'units': 'm'}])
+    with Server(*arguments) as server:
+        server.ask('POST', '/v1/scenes', {'path': pathlib.Path(scene).name})
+        server.process.send_signal(signal.SIGTERM)
+        expect(server.process.wait(WAIT_S) == 0, server.log_text()[-2000:])
+    events = [json.loads(line)['event'] for line in server.log_text().splitlines() if line.startswith('{')]
+    expect('scene_failed' in events and events[-1] == 'stopped', events)
+
+
 def test_metrics_health_and_log_tell_what_happened():
     folder, arguments = rooted()
     with Server(*arguments) as server:
