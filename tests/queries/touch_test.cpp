@@ -2,6 +2,9 @@
 // anything meets: against the sets of whole frames, which share no search with it.
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "compute/native/native_backend.h"
 #include "model/generate/solids.h"
 #include "model/lattice/rotation.h"
@@ -46,6 +49,54 @@ TEST(Touch, OfAFineShaftInASquareHoleIsWhatFramesSay) {
   }
   EXPECT_GT(touching, 40);
   EXPECT_LT(touching, 160);
+}
+
+/// A box with a hollow, and a small cube in the middle of that.
+Mesh hollow() {
+  Mesh mesh = solids::box(Vec3(-30 * kMm), Vec3(30 * kMm));
+  Mesh inner = solids::box(Vec3(-20 * kMm), Vec3(20 * kMm));
+  for (auto& triangle : inner.triangles) std::swap(triangle[1], triangle[2]);
+  solids::append(mesh, inner, "hollow");
+  solids::append(mesh, solids::box(Vec3(-1 * kMm), Vec3(1 * kMm)), "cube");
+  return mesh;
+}
+
+TEST(Touch, OfWhatLiesWhollyInsideIsNoDistance) {
+  struct Place {
+    double along_x, distance;  ///< of the tool's middle; 0: it touches. mm
+  };
+  for (const auto& [half, places] : {std::pair<double, std::vector<Place>>{2,
+                                                                           {{25, 0},     // in the wall
+                                                                            {10, 7},     // to the cube
+                                                                            {15, 3},     // to the wall
+                                                                            {45, 13}}},  // outside
+                                     {10, {{0, 0}, {45, 5}}}}) {  // the cube is in the tool; outside
+    GeometrySettings settings;
+    settings.voxel_size_m = 2 * kMm;
+    const auto geometry =
+        build_geometry(hollow(), solids::box(Vec3(-half * kMm), Vec3(half * kMm)), settings);
+    ASSERT_TRUE(geometry) << geometry.error().sentence;
+    const auto native = make_native_backend();
+    ASSERT_TRUE(native->prepare(*geometry, Plan{}, {}));
+    for (const Place& place : places) {
+      SCOPED_TRACE(place.along_x);
+      const LatticePose at = *to_lattice({Vec3(place.along_x * kMm, 0, 0), Quat(1, 0, 0, 0)}, *geometry);
+      std::uint8_t bit = 0;
+      ASSERT_TRUE(native->touches({&at, 1}, {&bit, 1}));
+      EXPECT_EQ(bit != 0, place.distance == 0);
+      Clearance found;
+      ASSERT_TRUE(native->clearance(at, INT32_MAX - 2, found));
+      ASSERT_EQ(found.kind, place.distance == 0 ? Clearance::Kind::kTouching : Clearance::Kind::kApart);
+      if (place.distance == 0) continue;
+      // Two corners are rounded to the lattice, and what is left to whole steps.
+      EXPECT_NEAR(found.steps, place.distance * kMm / geometry->lattice.step_m, 3);
+      const std::int32_t steps = found.steps;
+      ASSERT_TRUE(native->clearance(at, steps, found));
+      EXPECT_EQ(found.kind, Clearance::Kind::kApart);
+      ASSERT_TRUE(native->clearance(at, steps - 1, found));
+      EXPECT_EQ(found.kind, Clearance::Kind::kFurther);
+    }
+  }
 }
 
 }  // namespace
