@@ -99,5 +99,30 @@ TEST(Touch, OfWhatLiesWhollyInsideIsNoDistance) {
   }
 }
 
+/// Beyond the lattice nothing touches; what still has a place on it is measured all the same.
+TEST(Touch, OfWhatIsBeyondTheLatticeIsADistanceAsFarAsThereAreNumbers) {
+  const auto geometry = build_geometry(solids::box(Vec3(-30 * kMm), Vec3(30 * kMm)),
+                                       solids::box(Vec3(-10 * kMm), Vec3(10 * kMm)), {});
+  ASSERT_TRUE(geometry) << geometry.error().sentence;
+  const auto native = make_native_backend();
+  ASSERT_TRUE(native->prepare(*geometry, Plan{}, {}));
+  int measured = 0, further = 0;
+  for (int x = 45; x < 1000; x += 5) {
+    const LatticePose at = *to_lattice({Vec3(x * kMm, 0, 0), Quat(1, 0, 0, 0)}, *geometry);
+    Clearance found;
+    ASSERT_TRUE(native->clearance(at, INT32_MAX - 2, found));
+    if (found.kind == Clearance::Kind::kFurther) {
+      EXPECT_TRUE(at.beyond_lattice);
+      ++further;
+      continue;
+    }
+    ASSERT_EQ(found.kind, Clearance::Kind::kApart) << x;
+    EXPECT_NEAR(found.steps, (x - 40) * kMm / geometry->lattice.step_m, 3) << x;
+    measured += at.beyond_lattice ? 1 : 0;
+  }
+  EXPECT_GT(measured, 0);
+  EXPECT_GT(further, 0);
+}
+
 }  // namespace
 }  // namespace palpate
