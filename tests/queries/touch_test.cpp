@@ -2,6 +2,7 @@
 // anything meets: against the sets of whole frames, which share no search with it.
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -63,14 +64,20 @@ Mesh hollow() {
 
 TEST(Touch, OfWhatLiesWhollyInsideIsNoDistance) {
   struct Place {
-    double along_x, distance;  ///< of the tool's middle; 0: it touches. mm
+    double x, y, distance;  ///< of the tool's middle; 0: it touches. mm
   };
-  for (const auto& [half, places] : {std::pair<double, std::vector<Place>>{2,
-                                                                           {{25, 0},     // in the wall
-                                                                            {10, 7},     // to the cube
-                                                                            {15, 3},     // to the wall
-                                                                            {45, 13}}},  // outside
-                                     {10, {{0, 0}, {45, 5}}}}) {  // the cube is in the tool; outside
+  const std::vector<Place> of_a_small_tool{
+      {25, 0, 0},   // in the wall
+      {10, 0, 7},   // to the cube
+      {15, 0, 3},   // to the wall
+      {45, 0, 13},  // outside
+  };
+  const std::vector<Place> of_a_large_tool{
+      {0, 0, 0},                          // the cube is in it
+      {45, 0, 5},                         // outside, before a face
+      {45, 45, 5 * std::numbers::sqrt2},  // and before an edge
+  };
+  for (const auto& [half, places] : {std::pair{2, of_a_small_tool}, {10, of_a_large_tool}}) {
     GeometrySettings settings;
     settings.voxel_size_m = 2 * kMm;
     const auto geometry =
@@ -79,8 +86,9 @@ TEST(Touch, OfWhatLiesWhollyInsideIsNoDistance) {
     const auto native = make_native_backend();
     ASSERT_TRUE(native->prepare(*geometry, Plan{}, {}));
     for (const Place& place : places) {
-      SCOPED_TRACE(place.along_x);
-      const LatticePose at = *to_lattice({Vec3(place.along_x * kMm, 0, 0), Quat(1, 0, 0, 0)}, *geometry);
+      SCOPED_TRACE(place.x);
+      const LatticePose at =
+          *to_lattice({Vec3(place.x * kMm, place.y * kMm, 0), Quat(1, 0, 0, 0)}, *geometry);
       std::uint8_t bit = 0;
       ASSERT_TRUE(native->touches({&at, 1}, {&bit, 1}));
       EXPECT_EQ(bit != 0, place.distance == 0);

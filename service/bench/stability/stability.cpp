@@ -217,7 +217,7 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
     auto prepared = PreparedCase::make(what, Profile::kRefined, engine_of(parts, Profile::kRefined));
     if (!prepared) return prepared.error();
     const auto none =
-        highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0);
+        highest_stable_body_query(make, what, **prepared, bare_device(), LawKind::kCorrected, 0, interrupted);
     if (!none) return none.error();
     chart.labels.push_back(what.name);
     const std::uint32_t areas = what.name == "four" ? 4 : 1;
@@ -225,7 +225,8 @@ Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& t
              *none);
     for (std::size_t i = 0; i < 3; ++i) {
       if (!console.progress("the highest stable K", 0.25 * static_cast<double>(i + 1))) return cut_short();
-      const auto k = highest_stable_body_query(make, what, **prepared, bare_device(), kLaws[i], 10);
+      const auto k =
+          highest_stable_body_query(make, what, **prepared, bare_device(), kLaws[i], 10, interrupted);
       if (!k) return k.error();
       add_cell(table, "query: " + what.name, {.law = kLaws[i], .delay = 10, .n = 10, .areas = areas}, *k,
                *none);
@@ -288,8 +289,8 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
     auto prepared = PreparedCase::make(what, Profile::kRefined, engine_of(parts, Profile::kRefined));
     if (!prepared) return prepared.error();
     console.step("six degrees of freedom over the query, held by a hand: " + what.name);
-    const auto k =
-        highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected, 10);
+    const auto k = highest_stable_body_query(make, what, **prepared, DeviceSettings{}, LawKind::kCorrected,
+                                             10, interrupted);
     if (!k) return k.error();
     row("body over the query, held by a hand: " + what.name, LawKind::kCorrected, 10, DeviceSettings{},
         what.name == "four" ? 4 : 1, *k, std::nan(""));

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "model/lattice/rotation.h"
-#include "service/cli/console.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kLow = 10, kHigh = 1e5;  // N/m: where K is looked for
+constexpr int kQueryTicks = 2000;         // of a run over the real query
 
 DeviceSettings bare(double mass_kg = 0.5, double inertia_kg_m2 = 2e-3) {
   DeviceSettings device;
@@ -116,7 +116,7 @@ DeviceSettings bare_device() {
 
 Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared,
                                const DeviceSettings& device, LawKind law, int delay, double stiffness,
-                               int ticks) {
+                               const std::function<bool()>& stopped) {
   const Pose start = what.pose(0);
   const Vec3 gc_tool = prepared.geometry().tool_gc_m;
   Result<void> failed;
@@ -132,7 +132,7 @@ Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& wh
   loop.at_rest = {start.position + start.rotation * gc_tool, start.rotation};
   loop.contact = [&](const Pose& gc, LawResult& out) {
     const Pose tool{gc.position - gc.rotation * gc_tool, gc.rotation};
-    if (failed && interrupted()) failed = Error{ErrorCode::kInternal, "interrupted"};
+    if (failed && stopped && stopped()) failed = Error{ErrorCode::kInternal, "interrupted"};
     if (failed) failed = prepared.ask(tool, out);
     if (!failed || coupled || !out.field) return;
     const Result<Felt> felt = prepared.feel(tool);
@@ -155,17 +155,17 @@ Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& wh
   loop.kick = {blow * what.kick, 0.02 * blow * what.twist};
   loop.settle_ticks = 200;
   loop.reach_m = 2e-3;
-  const bool stable = AxisLoop::stable(loop.run(ticks), 2e-5);
+  const bool stable = AxisLoop::stable(loop.run(kQueryTicks), 2e-5);
   if (!failed) return failed.error();
   return stable;
 }
 
 Result<double> highest_stable_body_query(const SimulatedMaker& make, const ContactCase& what,
                                          PreparedCase& prepared, const DeviceSettings& device, LawKind law,
-                                         int delay, int ticks) {
+                                         int delay, const std::function<bool()>& stopped) {
   Result<void> failed;
   const double found = highest_stable(200, 20000, [&](double k) {
-    const Result<bool> stable = stable_body_query(make, what, prepared, device, law, delay, k, ticks);
+    const Result<bool> stable = stable_body_query(make, what, prepared, device, law, delay, k, stopped);
     if (!stable) failed = stable.error();
     return stable && *stable;
   });

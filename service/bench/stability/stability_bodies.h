@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,15 +31,16 @@ double highest_stable_body(const SimulatedMaker& make, const BodyCase& what, Law
 
 /// The same over the real query, the tool in a contact of stability_contacts.h and free in all six axes;
 /// results `delay` ticks old, 0: none. Law `corrected` with the spring that goes with profile `refined`; the
-/// others hold or carry on what a lone query would feel. Runs of `ticks`.
+/// others hold or carry on what a lone query would feel. Runs of 2 s. Errors: the engine's own; `stopped`
+/// says so (may be empty).
 Result<double> highest_stable_body_query(const SimulatedMaker& make, const ContactCase& what,
                                          PreparedCase& prepared, const DeviceSettings& device, LawKind law,
-                                         int delay, int ticks = 2000);
+                                         int delay, const std::function<bool()>& stopped = {});
 
 /// Whether it is stable at a K.
 Result<bool> stable_body_query(const SimulatedMaker& make, const ContactCase& what, PreparedCase& prepared,
                                const DeviceSettings& device, LawKind law, int delay, double stiffness,
-                               int ticks = 2000);
+                               const std::function<bool()>& stopped = {});
 
 /// 0.5 kg and 2 g·m², 1 N·s/m and 5 mN·m·s, held by next to nothing, but against toppling.
 DeviceSettings bare_device();
