@@ -217,6 +217,9 @@ json parse_scene_text(const std::string& file, const std::string& text) {
     }
     return true;
   };
+  // The library takes a zero for the end of the text, and says so.
+  if (const auto zero = text.find('\0'); zero != std::string::npos)
+    throw SceneFault{fmt::format("{}: byte {} is zero: this is no text", file, zero)};
   try {
     return json::parse(text, watch);
   } catch (const json::exception& fault) {

@@ -228,6 +228,7 @@ TEST(SceneFile, SyntaxHasLineAndColumnAndAKeyStandsOnlyOnce) {
               HasSubstr("s.json: parse error at line 2, column 14: syntax error"));
   EXPECT_THAT(fault_of("{\"static\": NaN}"), HasSubstr("parse error at line 1, column 12"));
   EXPECT_THAT(fault_of(""), HasSubstr("parse error at line 1"));
+  EXPECT_EQ(fault_of(std::string("{\0}", 3)), "s.json: byte 1 is zero: this is no text");
   EXPECT_THAT(fault_of("{\"static\": \"\xff\"}"), HasSubstr("invalid string: ill-formed UTF-8 byte"));
   EXPECT_THAT(fault_of("{\"\xc3(\": 1}"), HasSubstr("ill-formed UTF-8"));
   EXPECT_EQ(fault_of(R"({"static": [{"mesh": "a.stl"}, {"mesh": "a.stl", "mesh": "b.stl"}]})"),
