@@ -51,7 +51,7 @@ Mesh square_of_two_sides(double side, double height) {
   return out;
 }
 
-TEST(RepeatedTriangles, OfABodyThatIsThereTwiceTheFirstPush) {
+TEST(RepeatedFaces, OfABodyThatIsThereTwiceTheFirstPush) {
   // A cone has a tip, round and flat sides; a needle is seen by extra samples alone.
   for (const Mesh& once : {solids::cone(0.02, 0.04), solids::cone(0.001, 0.04, 12), solids::sphere(0.01)})
     for (const bool inside_out : {false, true}) {
@@ -73,20 +73,20 @@ TEST(RepeatedTriangles, OfABodyThatIsThereTwiceTheFirstPush) {
     }
 }
 
-TEST(RepeatedTriangles, AreNoFacesOfBodiesSideBySide) {
+TEST(RepeatedFaces, AreNoFacesOfBodiesSideBySide) {
   Mesh two;
   solids::append(two, solids::box(Vec3(0), Vec3(0.02)), "below");
   solids::append(two, solids::box(Vec3(0, 0, 0.02), Vec3(0.02, 0.02, 0.04)), "above");
   EXPECT_TRUE(repeated_in(built_of(two)).empty());
 }
 
-TEST(RepeatedTriangles, OfASheetWithTwoSidesOnePushes) {
+TEST(RepeatedFaces, OfASheetWithTwoSidesOnePushes) {
   const LatticeMesh sheet = built_of(square_of_two_sides(0.02, 0));
   ASSERT_NE(sheet.flags[0] & kTriangleSheet, 0);
   EXPECT_EQ(repeated_in(sheet), numbers(2, 4));
 }
 
-TEST(RepeatedTriangles, OfASheetOnASolidFaceTheSolidPushes) {
+TEST(RepeatedFaces, OfASheetOnASolidFaceTheSolidPushes) {
   // The sheet comes first, and has the corners of the box's lid, whichever way that is cut.
   const Mesh box = solids::box(Vec3(0), Vec3(0.02));
   Mesh lid;
@@ -117,7 +117,7 @@ TEST(RepeatedTriangles, OfASheetOnASolidFaceTheSolidPushes) {
   }
 }
 
-TEST(RepeatedTriangles, OfABodyThatIsThereTwiceBesideAnotherAreThatBodysNot) {
+TEST(RepeatedFaces, OfABodyThatIsThereTwiceBesideAnotherAreThatBodysNot) {
   Mesh three;
   solids::append(three, solids::box(Vec3(0), Vec3(0.02)), "below");
   solids::append(three, solids::box(Vec3(0), Vec3(0.02)), "once more");
