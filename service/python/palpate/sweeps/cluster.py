@@ -27,18 +27,24 @@ def local(workers, gpu):
     processors = os.sched_getaffinity(0)
     if workers is None:
         workers = 1 if gpu else min(len(processors), MOST_WORKERS)
-    # One thread's batch has threads of its own; the other writes meanwhile.
-    with tempfile.TemporaryDirectory(prefix='palpate-sweep-') as folder, LocalCluster(
-        n_workers=workers,
-        threads_per_worker=2,
-        processes=True,
-        dashboard_address=':0',
-        local_directory=folder,
-        silence_logs=logging.ERROR,
-    ) as cluster, Client(cluster) as client:
-        try:
-            yield client, shares(workers, processors)
-        finally:
-            # A busy machine may be slow to take them down; by then all is written.
-            for name in ('distributed', 'tornado', 'asyncio'):
-                logging.getLogger(name).setLevel(logging.CRITICAL)
+    loggers = [logging.getLogger(name) for name in ('distributed', 'tornado', 'asyncio')]
+    levels = [logger.level for logger in loggers]
+    try:
+        # One thread's batch has threads of its own; the other writes meanwhile.
+        with tempfile.TemporaryDirectory(prefix='palpate-sweep-') as folder, LocalCluster(
+            n_workers=workers,
+            threads_per_worker=2,
+            processes=True,
+            dashboard_address=':0',
+            local_directory=folder,
+            silence_logs=logging.ERROR,
+        ) as cluster, Client(cluster) as client:
+            try:
+                yield client, shares(workers, processors)
+            finally:
+                # A busy machine may be slow to take them down; by then all is written.
+                for logger in loggers:
+                    logger.setLevel(logging.CRITICAL)
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
