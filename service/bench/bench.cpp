@@ -7,6 +7,7 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 
+#include "service/cli/console.h"
 #include "service/cli/number_range.h"
 #include "service/cli/output_folder.h"
 
@@ -118,9 +119,9 @@ class Benches {
   void measure_now(Result<void> (*run)(const BenchOptions&, const Parts&)) {
     outcome_ = check_output_folder(options_.out, kResultFiles, "a bench's", options_.overwrite);
     if (outcome_) outcome_ = run(options_, parts_);
-    if (!outcome_ && outcome_.error().sentence == "interrupted")
-      outcome_ =
-          Error{outcome_.error().code, fmt::format("interrupted; nothing of it is in '{}'", options_.out)};
+    if (!outcome_ && interrupted())
+      outcome_ = Error{outcome_.error().code,
+                       fmt::format("{}; nothing of it is in '{}'", outcome_.error().sentence, options_.out)};
   }
   void measure(CLI::App& command, Result<void> (*run)(const BenchOptions&, const Parts&)) {
     command.callback([*this, run]() mutable { measure_now(run); });

@@ -43,6 +43,7 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
         !done)
       return done;
     const std::string engine = backend.measured_by();
+    std::size_t answered = first + count;
     for (std::size_t i = first; i < first + count; ++i) {
       bool touches = bits[i - first] != 0;
       if (touches && rule.tolerance > 0) {
@@ -62,13 +63,15 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
       if (options.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
       append_clearance_line(geometry, i, poses[i], clearance, touches,
                             bits[i - first] != 0 ? engine : backend.measured_by(), text);
-      if (interrupted())
-        return Error{ErrorCode::kInternal, fmt::format("interrupted after {} of {} poses", i, poses.size())};
+      if (interrupted()) {
+        answered = i + 1;
+        break;
+      }
     }
     if (auto done = print_text(text); !done) return done;
-    if (interrupted() && first + count < poses.size())
+    if (interrupted() && answered < poses.size())
       return Error{ErrorCode::kInternal,
-                   fmt::format("interrupted after {} of {} poses", first + count, poses.size())};
+                   fmt::format("interrupted after {} of {} poses", answered, poses.size())};
   }
   for (const std::string& note : backend.take_notes()) console.note(note);
   return {};

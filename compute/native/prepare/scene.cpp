@@ -1,5 +1,6 @@
 #include "compute/native/prepare/scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "compute/native/prepare/partition_build.h"
@@ -69,12 +70,12 @@ std::uint64_t most_sample_bytes(const SceneGeometry& geometry) {
   const double voxel = geometry.mockup_grid.size, spacing = geometry.sample_spacing,
                area = geometry.mockup_surface.area,
                words = geometry.mockup_grid.size > VoxelSamples::kNarrowVoxel ? 8 : 4,
-               samples = kMoreSamples * area / (spacing * spacing),
+               most = static_cast<double>(kMostSampleBytes) / words,  // with more of them none is kept
+      samples = std::min(kMoreSamples * area / (spacing * spacing), most),
                corners = static_cast<double>(geometry.mockup.triangles.size());
-  // While they are made by entry the words alone; then these, and points with what belongs to them.
-  const double listed = words * samples;
-  if (listed > static_cast<double>(kMostSampleBytes)) return kMostSampleBytes;  // and none is kept
-  return static_cast<std::uint64_t>(2 * listed + 6 * (samples + corners) + 2 * corners +
+  // By entry there are words alone, twice while they are joined; then these, and points with what belongs to
+  // them.
+  return static_cast<std::uint64_t>(2 * words * samples + 6 * (samples + corners) + 2 * corners +
                                     sizeof(VoxelSamples::Begin) * kMoreVoxels * area / (voxel * voxel));
 }
 

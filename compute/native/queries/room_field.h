@@ -80,7 +80,7 @@ class RoomField {
   VoxelGrid grid_{};
   double per_cell_ = 0;  ///< cells a step
   /// By brick: where its cells are in `near_`; below 0 minus so many cells, or kNew, or kTaken, less its
-  /// place there. All threads change it from kNew to kTaken to its place.
+  /// place there. Any thread takes it from kNew by kTaken to its place.
   mutable std::vector<std::int32_t> place_;
   std::vector<BrickBits> touched_;  ///< of the bricks in `near_`
   std::unique_ptr<Cells[]> near_;   ///< of whatever has a place

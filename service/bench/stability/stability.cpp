@@ -253,10 +253,11 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
   for (const BodyCase& what : body_cases()) {
     console.step("six degrees of freedom: " + what.name);
     chart.labels.push_back(what.name);
+    const double all = 3 * std::size(kLaws);  // three delays
     double done = 0;
     for (const int delay : {1, 5, 10})
       for (std::size_t i = 0; i < 3; ++i) {
-        if (!console.progress("the highest stable K", done++ / 9)) return cut_short();
+        if (!console.progress("the highest stable K", done++ / all)) return cut_short();
         const double k = highest_stable_body(make, what, kLaws[i], delay);
         // The printed law pulls by a scalar K along every way, so no limit of one contact is its own.
         const double expected =
