@@ -70,6 +70,17 @@ def test_a_long_bench_of_a_force_ends_when_asked():
     expect(code == 1 and 'interrupted' in said and not (folder / 'out').exists(), said)
 
 
+def test_verdicts_that_are_interrupted_print_what_they_say_was_answered():
+    folder = Folder()
+    scene = folder.save()
+    rows = ''.join(f'0,0,{0.04 + 1e-8 * i},0,0,0,1\n' for i in range(1_000_000))
+    poses = folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + rows)
+    code, said = at_terminal('query', scene, '--poses', poses, '--clearance', until=b'"number"')
+    answered = re.search(r'interrupted after (\d+) of 1000000 poses', said)
+    expect(code == 1 and answered, said[-500:])
+    expect(int(answered[1]) == said.count('"number"'), (answered[0], said.count('"number"')))
+
+
 def test_a_bench_of_stability_ends_when_asked():
     folder = Folder()
     code, said = at_terminal('bench', 'stability', folder.save(), '--out', folder / 'out', until=b'formulas')
