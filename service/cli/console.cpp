@@ -8,19 +8,33 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 namespace palpate {
 namespace {
 
 std::atomic<bool> interrupt_seen{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+std::atomic<std::int64_t> interrupt_ns{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free,
+              "a signal handler may only touch lock-free atomics");
+// Signals so close to each other are one: `timeout` sends its own to the program and then to its group
+// (chosen).
+constexpr std::int64_t kOneSignalNs = 250'000'000;
 
 extern "C" void on_interrupt(int number) {
-  interrupt_seen.store(true, std::memory_order_relaxed);
-  std::signal(number, SIG_DFL);  // a second signal ends a program that hangs
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  const std::int64_t now = std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+  if (!interrupt_seen.exchange(true, std::memory_order_relaxed)) {
+    interrupt_ns.store(now, std::memory_order_relaxed);
+  } else if (now - interrupt_ns.load(std::memory_order_relaxed) > kOneSignalNs) {
+    std::signal(number, SIG_DFL);  // a second signal ends a program that hangs
+    std::raise(number);
+  }
 }
 
 std::size_t terminal_columns() {

@@ -1,5 +1,6 @@
 """`palpate bench throughput` and `latency`: each engine has rows of its own, a batch or frame of the device is
-one submission of few dispatches whatever its size, and --largest bounds the batches."""
+one submission of few dispatches whatever its size, and --largest bounds the batches. `prepare`: stages add up to
+what they are stages of. `jitter`: every tick that was due is counted."""
 import csv
 
 from harness import *
@@ -57,6 +58,40 @@ def test_latency_by_engine():
         if engine == 'gpu':
             expect(float(total[0]['submissions']) == 1, total)
             expect(float(total[0]['dispatches']) <= MOST_DISPATCHES, total)
+
+
+def test_a_start_by_stage():
+    folder = Folder()
+    out = folder / 'prepare'
+    done = palpate('bench', 'prepare', ball_on_block(folder), '--out', out)
+    expect(done.code == 0, done)
+    with open(out / 'results.csv') as file:
+        rows = list(csv.DictReader(file))
+    seconds = {row['stage']: float(row['seconds']) for row in rows if row['who'] == 'palpate, first start'}
+    whole, parts = seconds['whole start'], seconds['meshes and lattice'] + seconds['preparation']
+    expect(abs(whole - parts) <= 1e-3 * whole, f'but for the four digits printed: {seconds}')
+    stages = {stage: s for stage, s in seconds.items() if stage.startswith('- ')}
+    expect(stages and all(0 <= s <= whole for s in stages.values()), f'none takes longer than all: {seconds}')
+    expect('first start' in (out / 'report.html').read_text(), 'the page')
+
+
+def test_ticks_of_a_loop_under_load():
+    folder = Folder()
+    out = folder / 'jitter'
+    done = palpate(
+        'bench', 'jitter', ball_on_block(folder), '--seconds', '1', '--backend', 'cpu', '--out', out
+    )
+    expect(done.code == 0, done)
+    with open(out / 'results.csv') as file:
+        ours = next(row for row in csv.DictReader(file) if row['loop'] == 'palpate')
+    ticks, missed = int(ours['ticks']), int(ours['missed'])
+    expect(ticks <= 1000 <= ticks + missed, ours)
+    late = [float(ours[f'late_{name}_us']) for name in ('p50', 'p99', 'p999', 'max')]
+    expect(0 <= late[0] and late == sorted(late), ours)
+    expect(
+        'cyclictest' in (out / 'report.html').read_text(),
+        'the page says what is beside it, or that nothing is',
+    )
 
 
 main(globals())

@@ -26,9 +26,9 @@ CLI = (
 )
 
 
-def at_terminal(*arguments, until=None, cwd=None, both=True):
+def at_terminal(*arguments, until=None, cwd=None, both=True, apart_s=()):
     """What the program writes to a terminal (standard output and error; without `both` error is kept apart),
-    and its exit code. `until`: words after which it is sent SIGINT."""
+    and its exit code. `until`: words after which it is sent SIGINT, and again after each of the times."""
     ours, its = pty.openpty()
     process = subprocess.Popen(
         [PROGRAM, *map(str, arguments)],
@@ -50,6 +50,9 @@ def at_terminal(*arguments, until=None, cwd=None, both=True):
         said += piece
         if until and until in said:
             process.send_signal(signal.SIGINT)
+            for wait in apart_s:
+                time.sleep(wait)
+                process.send_signal(signal.SIGINT)
             until = None
     code = process.wait(TIMEOUT_S)
     os.close(ours)
@@ -68,6 +71,16 @@ def test_a_long_bench_of_a_force_ends_when_asked():
     asked = ('bench', 'force', scene, '--poses', poses, '--frames', '100000', '--out', folder / 'out')
     code, said = at_terminal(*asked, until=b'poses')
     expect(code == 1 and 'interrupted' in said and not (folder / 'out').exists(), said)
+
+
+def test_signals_at_once_are_one():
+    """As `timeout` sends them, to the program and to its group."""
+    folder = Folder()
+    scene = folder.save()
+    poses = folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n0,0,0.018,0,0,0,1\n0.002,0,0.018,0,0,0,1\n')
+    asked = ('bench', 'force', scene, '--poses', poses, '--frames', '100000', '--out', folder / 'out')
+    code, said = at_terminal(*asked, until=b'poses', apart_s=(0.02,))
+    expect(code == 1 and 'interrupted' in said, f'exit {code}: {said}')
 
 
 def test_verdicts_that_are_interrupted_print_what_they_say_was_answered():

@@ -71,6 +71,16 @@ def test_a_recorded_trace_is_a_device_of_any_number_of_sessions():
             expect(refused.status == 400 and word in refused.json()['detail'], refused)
 
 
+def test_a_session_whose_device_is_not_there_never_began():
+    folder, arguments = rooted()
+    simulated(folder)
+    with Server(*arguments) as server:
+        refused = server.ask('POST', '/v1/sessions', {'scene': named(server), 'device': 'inverse3'})
+        expect(refused.status == 409 and server.ask('GET', '/v1/sessions').json() == {'sessions': []}, refused)
+        log = server.log_text()
+        expect('session_started' not in log and 'session_over' not in log, log)
+
+
 def test_curl_alone_uploads_waits_and_queries_a_thousand_poses():
     curl = shutil.which('curl')
     expect(curl, 'curl is missing (scripts/packages.txt)')

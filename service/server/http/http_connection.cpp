@@ -256,7 +256,7 @@ class HttpConnection {
     }
 
     if (const auto coding = view(head[http::field::content_encoding]);
-        !coding.empty() && coding != "identity") {
+        !coding.empty() && !beast::iequals(head[http::field::content_encoding], "identity")) {
       refusal_ = Problem{415, "media-type", "a body is taken as it is, without Content-Encoding",
                          "Content-Encoding"};
       co_return co_await refuse();

@@ -133,8 +133,10 @@ struct SessionHost::Session {
       summary = ordered_json::parse(text, nullptr, false);
     }
     settled.notify_all();
-    log.info("session_over",
-             {{"session", id}, {"error", why ? why->sentence : ""}, {"ticks", outcome ? outcome->ticks : 0}});
+    if (open)
+      log.info(
+          "session_over",
+          {{"session", id}, {"error", why ? why->sentence : ""}, {"ticks", outcome ? outcome->ticks : 0}});
     telemetry->finish(why ? "the session failed" : stop ? "the session was stopped" : "the session is over");
     // The device and the scene are free again before anybody can see that it is over twice.
     use.reset();
@@ -220,8 +222,12 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
                                                        : bad_request(device.error().sentence, "device");
   session->device = std::move(*device);
   session->max_force = session->device->capabilities().max_force_n;
-  session->pausable = std::make_unique<PausableDevice>(*session->device, simulated,
-                                                       [session = session.get()] { session->opened(); });
+  session->pausable =
+      std::make_unique<PausableDevice>(*session->device, simulated, [session = session.get(), this] {
+        log_.info("session_started",
+                  {{"session", session->id}, {"scene", session->scene}, {"device", session->device_name}});
+        session->opened();
+      });
   session->backend = std::make_unique<BackendInTurns>(*scene.backend, session->use->turns());
   const fs::path folder = root_ / request.record;
   if (!request.record.empty()) {
@@ -240,8 +246,6 @@ std::variant<std::string, Problem> SessionHost::start(const Request& request) {
   session->id = "s" + std::to_string(++count_);
   sessions_.push_back(session);
   session->thread = std::thread([session = session.get(), this] { session->run(log_); });
-  log_.info("session_started",
-            {{"session", session->id}, {"scene", session->scene}, {"device", session->device_name}});
   lock.unlock();  // a device may take its time, and others may be stopped meanwhile
   if (const std::optional<Error> error = session->wait_open()) {
     session->join();
