@@ -283,8 +283,10 @@ Result<Mesh> read_mesh(const std::string& path, double scale, ImportReport& repo
                                            ? read_iges(path, name, report, tell, colours)
                                            : read_brep(path, name, tell);
     if (!bodies) return bodies.error();
-    const double unit_m = scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre);
-    return triangles_of(*bodies, path, unit_m, tessellation, report, tell);
+    const bool is_unknown = format == Format::kBrep && scale == 1;
+    const FileUnit unit{scale * (format == Format::kBrep ? 1 : kMetresPerMillimetre),
+                        is_unknown ? "file units" : "m"};
+    return triangles_of(*bodies, path, unit, tessellation, report, tell);
   } catch (const Standard_Failure& failure) {
     return bad_value(fmt::format(
         "'{}' can't be read: {}", path,

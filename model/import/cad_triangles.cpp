@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/lattice/lattice_build.h"
+#include "model/import/bad_coordinate.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -31,8 +31,8 @@ constexpr double kFewestDeflections = 8;  ///< no body is made of triangles more
 
 class Triangulator {
  public:
-  /// `unit_m`: metres per unit of the shapes.
-  Triangulator(const std::string& file, double unit_m) : file_(file), unit_m_(unit_m) {}
+  Triangulator(const std::string& file, const FileUnit& unit)
+      : file_(file), unit_m_(unit.metres), unit_name_(unit.name) {}
 
   Result<Mesh> run(const std::vector<Body>& bodies, const Tessellation& tessellation, ImportReport& report,
                    const TellHowFar& tell) {
@@ -61,14 +61,14 @@ class Triangulator {
     }
     if (mesh_.triangles.empty())
       return bad_value(
-          fmt::format("'{}' has no faces of which triangles can be made (at most {:.3g} m from them)", file_,
-                      *deflection));
+          fmt::format("'{}' has no faces of which triangles can be made (at most {:.3g} {} from them)", file_,
+                      *deflection, unit_name_));
     if (flat_)
       report.notes.push_back(fmt::format("{} faces gave no triangles, the first is face {} of '{}'", flat_,
                                          first_flat_, flat_path_));
-    report.notes.push_back(
-        fmt::format("{} faces became triangles, about {:.4g} m from them at most, {:.4g}° between neighbours",
-                    faces_, *deflection, tessellation.angle_deg));
+    report.notes.push_back(fmt::format(
+        "{} faces became triangles, about {:.4g} {} from them at most, {:.4g}° between neighbours", faces_,
+        *deflection, unit_name_, tessellation.angle_deg));
     return std::move(mesh_);
   }
 
@@ -202,8 +202,7 @@ class Triangulator {
       const Vec3 metres = unit_m_ * Vec3(point.X(), point.Y(), point.Z());
       for (int k = 0; k < 3; ++k)
         if (!(std::abs(metres[k]) <= kLargestCoordinate))
-          return fmt::format("has coordinate {} m in '{}', which is not a number within ±{} m", metres[k],
-                             path, kLargestCoordinate);
+          return bad_coordinate(metres[k], fmt::format("'{}'", path));
       mesh_.vertices.push_back(metres);
     }
     const bool turned =
@@ -222,6 +221,7 @@ class Triangulator {
 
   const std::string& file_;
   double unit_m_;
+  const char* unit_name_;
   Mesh mesh_;
   std::size_t faces_ = 0, flat_ = 0, first_flat_ = 0;
   std::string flat_path_;
@@ -229,9 +229,9 @@ class Triangulator {
 
 }  // namespace
 
-Result<Mesh> triangles_of(const std::vector<Body>& bodies, const std::string& file, double unit_m,
+Result<Mesh> triangles_of(const std::vector<Body>& bodies, const std::string& file, const FileUnit& unit,
                           const Tessellation& tessellation, ImportReport& report, const TellHowFar& tell) {
-  return Triangulator(file, unit_m).run(bodies, tessellation, report, tell);
+  return Triangulator(file, unit).run(bodies, tessellation, report, tell);
 }
 
 }  // namespace palpate

@@ -7,10 +7,15 @@
 
 namespace palpate {
 
-/// Triangles of the bodies' faces, a part a body, metres. `file` is for sentences, `unit_m` metres per unit
-/// of the shapes; what became of the faces goes to `report`. Errors: kBadValue, no faces, or more triangles
-/// or larger coordinates than a mesh may have.
-Result<Mesh> triangles_of(const std::vector<Body>& bodies, const std::string& file, double unit_m,
+struct FileUnit {
+  double metres;     ///< per unit of the shapes
+  const char* name;  ///< of what they come in, for sentences: "m", or "file units" where nobody says which
+};
+
+/// Triangles of the bodies' faces, a part a body, metres. `file` is for sentences; what became of the faces
+/// goes to `report`. Errors: kBadValue, no faces, or more triangles or larger coordinates than a mesh may
+/// have.
+Result<Mesh> triangles_of(const std::vector<Body>& bodies, const std::string& file, const FileUnit& unit,
                           const Tessellation& tessellation, ImportReport& report, const TellHowFar& tell);
 
 }  // namespace palpate

@@ -18,11 +18,11 @@
 
 #include "model/files/file_view.h"
 #include "model/files/one_line.h"
+#include "model/import/bad_coordinate.h"
 #include "model/import/import_checks.h"
 #include "model/import/part_names.h"
 #include "model/import/polygon_split.h"
 #include "model/import/threemf_read.h"
-#include "model/lattice/lattice_build.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -246,8 +246,7 @@ class Flattener {
       const Vec3 point = scale_ * (transform * mesh.mVertices[v]);
       for (int k = 0; k < 3; ++k)
         if (!(std::abs(point[k]) <= kLargestCoordinate))
-          return fmt::format("has coordinate {} m in vertex {} of '{}', which is not a number within ±{} m",
-                             point[k], v, path, kLargestCoordinate);
+          return bad_coordinate(point[k], fmt::format("vertex {} of '{}'", v, path));
       mesh_.vertices.push_back(point);
     }
     mesh_.triangles.reserve(mesh_.triangles.size() + triangles);

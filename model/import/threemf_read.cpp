@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "model/files/one_line.h"
+#include "model/import/bad_coordinate.h"
 #include "model/import/part_names.h"
-#include "model/lattice/lattice_build.h"
 #include "model/mesh/weld.h"
 
 namespace palpate {
@@ -150,8 +150,7 @@ class Builder {
                                              static_cast<double>(vertex.m_fPosition[2])));
       for (int k = 0; k < 3; ++k)
         if (!(std::abs(point[k]) <= kLargestCoordinate))
-          return fmt::format("has coordinate {} m in vertex {} of '{}', which is not a number within ±{} m",
-                             point[k], i, path, kLargestCoordinate);
+          return bad_coordinate(point[k], fmt::format("vertex {} of '{}'", i, path));
       mesh_.vertices.push_back(point);
     }
     const bool mirrors = place.mirrors();

@@ -76,7 +76,9 @@ def test_a_session_whose_device_is_not_there_never_began():
     simulated(folder)
     with Server(*arguments) as server:
         refused = server.ask('POST', '/v1/sessions', {'scene': named(server), 'device': 'inverse3'})
-        expect(refused.status == 409 and server.ask('GET', '/v1/sessions').json() == {'sessions': []}, refused)
+        expect(
+            refused.status == 409 and server.ask('GET', '/v1/sessions').json() == {'sessions': []}, refused
+        )
         log = server.log_text()
         expect('session_started' not in log and 'session_over' not in log, log)
 

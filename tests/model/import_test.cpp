@@ -453,7 +453,7 @@ TEST_F(MeshImport, CoordinatesMustBeFinite) {
   std::string binary = binary_stl(solids::box(Vec3(0), Vec3(1)));
   const float nan = std::nanf("");
   std::memcpy(binary.data() + 84 + 12, &nan, 4);
-  EXPECT_THAT(refused(write("b.stl", binary)), HasSubstr("nan m in vertex 0"));
+  EXPECT_THAT(refused(write("b.stl", binary)), HasSubstr("coordinate inf or nan in vertex 0"));
   EXPECT_THAT(refused(write("c.obj", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n")), HasSubstr("nan"));
 }
 
