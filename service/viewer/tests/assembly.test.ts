@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import {Box3, Matrix4, Ray, Vector3} from 'three';
-import {AT_HOME, History, USUAL, path_text, scene_of, type Draft} from '../src/assembly/draft.js';
+import {AT_HOME, History, USUAL, path_text, scene_of, wrong_walls, type Draft} from '../src/assembly/draft.js';
 import {named_apart, plain_name} from '../src/assembly/file_drop.js';
 import {numbers_of, place_of} from '../src/assembly/gizmo.js';
 import {find_node, part_tree} from '../src/assembly/part_nodes.js';
@@ -97,6 +97,16 @@ test('a draft makes a scene: the part is the tool, the rest the mock-up', () => 
         (placed.scene['response'] as {voxel_size: number}).voxel_size
       ],
       [{driver: 'simulated', path: 'path.csv'}, 'ignore_initial', 0.002]);
+  const walled = (walls: string) => made({settings: {...USUAL, walls}}, '0:gear').scene;
+  assert.deepEqual(walled('auto')['static'], [
+    {mesh: 'a.glb', units: 'mm', sheet_thickness: 'auto', without: ['gear']},
+    {mesh: 'b.step', sheet_thickness: 'auto'}
+  ]);
+  assert.deepEqual(
+      walled('1.5')['tool'], {mesh: 'a.glb', units: 'mm', sheet_thickness: 0.0015, part: 'gear'});
+  for (const right of ['', 'auto', '0.001', '2', '1000']) assert.equal(wrong_walls(right), '');
+  for (const wrong of ['0', '-1', '0.0005', '1001', 'thin', '1e9', 'Infinity', '1,5'])
+    assert.match(wrong_walls(wrong), /from 0\.001 to 1000 mm/, wrong);
   assert.match(placed.path!, /^time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage\n0\.0000,/);
   const alone = assembly([file('a.stl')], [part(0, 'a', 0)]);
   assert.throws(() => scene_of(alone, draft({}), find_node(part_tree(alone), '0:a')!), /nothing is left/);

@@ -243,12 +243,19 @@ async function starts_in_contact() {
   check((await placed()) === 0, 'undo takes it back');
   await page.fill('#place-z', '-8');
   await page.keyboard.press('Tab');
+  await page.fill('#set-walls', 'thin');
+  await page.keyboard.press('Tab');
+  check(
+      await page.$eval('#set-walls', (field) => !field.checkValidity()),
+      'walls that are no number are refused');
+  await page.fill('#set-walls', '1.5');
+  await page.keyboard.press('Tab');
   const [archive] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
   const zipped = readFileSync(await archive.path());
   check(
       zipped.subarray(0, 2).toString() === 'PK' && zipped.includes('scene.json') &&
-          zipped.includes('gearbox.glb'),
-      'scene and mesh can be taken home');
+          zipped.includes('gearbox.glb') && zipped.includes('"sheet_thickness": 0.0015'),
+      'scene, with its walls, and mesh can be taken home');
   await page.click('#feel');
   await loop();
   await until(

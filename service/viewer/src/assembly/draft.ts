@@ -8,6 +8,7 @@ export type Engine = ''|'gpu'|'cpu'|'ref';
 export interface Settings {
   stiffness: number;
   voxel_mm: number|null;
+  walls: string;  // of open surfaces: '', 'auto', or mm
   profile: 'refined'|'paper';
   law: 'corrected'|'printed';
   budget_us: number;
@@ -21,10 +22,20 @@ export interface Draft {
   ignore_initial: boolean;
   settings: Settings;
 }
+const THINNEST_MM = 0.001, THICKEST_MM = 1000;  // scenes/scene.schema.json
+/** What is wrong with the walls of open surfaces as they are typed; '': nothing. */
+export function wrong_walls(text: string): string {
+  const mm = Number(text);
+  return text === '' || text === 'auto' || (mm >= THINNEST_MM && mm <= THICKEST_MM) ?
+      '' :
+      `Empty, "auto", or from ${THINNEST_MM} to ${THICKEST_MM} mm.`;
+}
+
 export const AT_HOME: Pose = [0, 0, 0, 0, 0, 0, 1];
 export const USUAL: Settings = {
   stiffness: 2000,
   voxel_mm: null,
+  walls: '',
   profile: 'refined',
   law: 'corrected',
   budget_us: 4000,
@@ -52,9 +63,14 @@ export interface Order {
  */
 export function scene_of(
     assembly: Assembly, draft: Draft, tool: PartNode, path: {time: number; pose: Pose}[] = []): Order {
+  const {settings} = draft, {walls} = settings;
   const body = (file: number): Record<string, unknown> => {
     const {name, states_unit} = assembly.files[file];
-    return {mesh: name, ...(states_unit || !draft.units[file] ? {} : {units: draft.units[file]})};
+    return {
+      mesh: name,
+      ...(states_unit || !draft.units[file] ? {} : {units: draft.units[file]}),
+      ...(walls ? {sheet_thickness: walls === 'auto' ? walls : Number(walls) / 1000} : {})
+    };
   };
   const whole = tool.path === '' ||
       assembly.parts.every((part, i) => part.file !== tool.file || tool.parts.includes(i));
@@ -66,7 +82,6 @@ export function scene_of(
       draft.place.some((value, i) => value !== AT_HOME[i]) ?
                                  [{time: 0, pose: draft.place}, {time: 1, pose: draft.place}] :
                                  [];
-  const {settings} = draft;
   const scene: Record<string, unknown> = {
     static: others.map(({i}) => ({...body(i), ...(i === tool.file ? {without: [tool.path]} : {})})),
     tool: {...body(tool.file), ...(whole ? {} : {part: tool.path})},

@@ -139,6 +139,7 @@ export class Workshop {
       if (assembly.state !== 'ready') return false;
       const kept = sessionStorage.getItem(`palpate.draft.${id}`);
       this.draft = kept ? {...this.fresh(), ...(JSON.parse(kept) as Draft)} : this.fresh();
+      this.draft.settings = {...USUAL, ...this.draft.settings};  // kept by a page that knew fewer
       this.made = sessionStorage.getItem(`palpate.made.${id}`) ?? '';
       await this.show(assembly, enter);
       return true;

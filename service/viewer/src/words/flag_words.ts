@@ -6,7 +6,7 @@ const WORDS: Record<string, [string, string]> = {
   ],
   sheet: [
     'open surface',
-    'An open surface (a sheet, without an inside) takes part: it pushes the shortest way out of the body that it is in.'
+    'An open surface (a sheet, without an inside) takes part: it pushes the shortest way out of the body that it is in. Where two meet, neither has an inside: walls make them push.'
   ],
   tool_open: [
     'tool is open',
