@@ -10,11 +10,18 @@
 #include "service/queries/path_check.h"
 #include "service/queries/portions.h"
 #include "service/queries/query_json.h"
+#include "service/queries/side_by_side.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kMostAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
+
+struct Verdict {
+  bool touches = false;
+  Clearance clearance;
+  std::string engine;
+};
 
 }  // namespace
 
@@ -35,6 +42,8 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
     lattice.push_back(*at);
   }
   std::vector<std::uint8_t> bits(std::min(kMostAtOnce, poses.size()));
+  std::vector<Verdict> verdicts(bits.size());
+  Fellows fellows(backend);
   std::string text;
   for (Portions portions(poses.size(), kMostAtOnce); portions.next();) {
     const std::size_t first = portions.first(), count = portions.count();
@@ -43,35 +52,44 @@ Result<void> verdicts_command(const QueryOptions& options, const std::vector<Pos
         !done)
       return done;
     const std::string engine = backend.measured_by();
-    std::size_t answered = first + count;
-    for (std::size_t i = first; i < first + count; ++i) {
-      bool touches = bits[i - first] != 0;
-      if (touches && rule.tolerance > 0) {
-        const auto touch = touch_at(backend, lattice[i], rule);
+    const auto judge = [&](CollisionBackend& asked, std::size_t k) -> Result<void> {
+      Verdict& verdict = verdicts[k] = {};
+      verdict.touches = bits[k] != 0;
+      if (verdict.touches && rule.tolerance > 0) {
+        const auto touch = touch_at(asked, lattice[first + k], rule);
         if (!touch) return touch.error();
-        touches = touch->touches;
+        verdict.touches = touch->touches;
       }
-      if (options.any) {
-        text += fmt::format("{{\"number\":{},\"engine\":\"{}\",\"touches\":{}}}\n", i, engine, touches);
-        continue;
+      verdict.engine = engine;
+      if (options.any) return {};
+      if (bits[k] != 0) {
+        verdict.clearance.kind = Clearance::Kind::kTouching;
+        return {};
       }
-      Clearance clearance;
-      if (bits[i - first] != 0)
-        clearance.kind = Clearance::Kind::kTouching;
-      else if (auto done = backend.clearance(lattice[i], within, clearance); !done)
-        return done;
-      if (options.within_m && clearance.kind == Clearance::Kind::kFurther) continue;
-      append_clearance_line(geometry, i, poses[i], clearance, touches,
-                            bits[i - first] != 0 ? engine : backend.measured_by(), text);
-      if (interrupted()) {
-        answered = i + 1;
-        break;
-      }
+      auto done = asked.clearance(lattice[first + k], within, verdict.clearance);
+      verdict.engine = asked.measured_by();
+      return done;
+    };
+    std::size_t answered = count;
+    if (!options.any || rule.tolerance > 0) {
+      const auto judged = fellows.ask(count, judge, [](std::size_t) { return !interrupted(); });
+      if (!judged) return judged.error();
+      answered = *judged;
+    }
+    for (std::size_t k = 0; k < answered; ++k) {
+      const Verdict& verdict = verdicts[k];
+      const std::size_t i = first + k;
+      if (options.any)
+        text += fmt::format("{{\"number\":{},\"engine\":\"{}\",\"touches\":{}}}\n", i, engine,
+                            rule.tolerance > 0 ? verdict.touches : bits[k] != 0);
+      else if (!options.within_m || verdict.clearance.kind != Clearance::Kind::kFurther)
+        append_clearance_line(geometry, i, poses[i], verdict.clearance, verdict.touches, verdict.engine,
+                              text);
     }
     if (auto done = print_text(text); !done) return done;
-    if (interrupted() && answered < poses.size())
+    if (interrupted() && first + answered < poses.size())
       return Error{ErrorCode::kInternal,
-                   fmt::format("interrupted after {} of {} poses", answered, poses.size())};
+                   fmt::format("interrupted after {} of {} poses", first + answered, poses.size())};
   }
   for (const std::string& note : backend.take_notes()) console.note(note);
   return {};

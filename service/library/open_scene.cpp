@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "model/cache/geometry_cache.h"
 #include "model/processors.h"
@@ -71,15 +68,6 @@ std::string describe(const HostedScene& hosted, const std::string& hash) {
                  {"plan", std::move(stages)},
                  {"warnings", loaded.scene.warnings}};
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// A thread of ours must not end the program.
-Result<void> guarded_piece(const OpenScene::Piece& piece, CollisionBackend& backend, std::size_t i) {
-  try {
-    return piece(backend, i);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::kInternal, "there was no memory left for a pose"};
-  }
 }
 
 }  // namespace
@@ -181,40 +169,27 @@ Result<void> OpenScene::ask_any(const Ask& asking) {
   return ask(asking);
 }
 
-Result<void> OpenScene::ask_side_by_side(std::size_t count, const Piece& piece,
+Result<void> OpenScene::ask_side_by_side(std::size_t count, const BackendWork& work,
                                          const std::function<Result<void>(std::size_t done)>& look) {
   constexpr std::size_t kWorthAThread = 32;  // pieces (chosen: some milliseconds)
   if (auto mine = usable(); !mine) return mine;
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  Result<void> outcome;
-  const auto serve = [&](CollisionBackend& backend, bool looks) {
-    for (std::size_t i = 0; (i = next.fetch_add(1)) < count;) {
-      Result<void> done = looks ? look(i) : Result<void>();
-      if (done) done = guarded_piece(piece, backend, i);
-      if (done) continue;
-      const std::lock_guard lock(mutex);
-      if (outcome) outcome = std::move(done);
-      next = count;
-      return;
-    }
-  };
   const Turn own = take_any();
   const std::size_t most = std::min<std::size_t>(processors(), count / kWorthAThread);
-  std::vector<Turn> others;  // given back after their threads have ended
-  std::vector<std::jthread> threads;
-  try {
-    while (threads.size() + 1 < most) {
-      Turn other = take_fellow();
-      if (!other) break;
-      others.push_back(std::move(other));
-      threads.emplace_back([&serve, &backend = *others.back()] { serve(backend, false); });
-    }
-  } catch (const std::exception&) {  // no thread, or no memory for one: done without
+  std::vector<Turn> others;
+  std::vector<CollisionBackend*> asked;
+  while (others.size() + 1 < most) {
+    Turn other = take_fellow();
+    if (!other) break;
+    asked.push_back(other.get());
+    others.push_back(std::move(other));
   }
-  serve(*own, true);
-  threads.clear();
-  return outcome;
+  Result<void> looked;
+  const auto done = side_by_side(*own, asked, count, work, [&](std::size_t begun) {
+    looked = look(begun);
+    return static_cast<bool>(looked);
+  });
+  if (!done) return done.error();
+  return looked;
 }
 
 Result<Pose> pose_at(const double* poses, std::size_t number) {

@@ -12,6 +12,7 @@
 #include "model/shared_backend.h"
 #include "service/cli/scene_host.h"
 #include "service/library/failure.h"
+#include "service/queries/side_by_side.h"
 
 namespace palpate::library {
 
@@ -38,11 +39,9 @@ class OpenScene {
   /// the engine can have fellows. `asking` may be called again, of the engine, when a fellow fails.
   Result<void> ask_any(const Ask& asking);
 
-  /// Piece `i` of some work, asking `backend`, and nobody else.
-  using Piece = std::function<Result<void>(CollisionBackend& backend, std::size_t i)>;
   /// Does pieces 0 … count − 1 side by side, in any order, as ask_any(). `look` is called by this thread
   /// between two of its pieces; an error ends the whole, as a piece's does.
-  Result<void> ask_side_by_side(std::size_t count, const Piece& piece,
+  Result<void> ask_side_by_side(std::size_t count, const BackendWork& work,
                                 const std::function<Result<void>(std::size_t done)>& look);
 
  private:

@@ -1,14 +1,18 @@
 """Sweeps that nothing disturbs, or that are cut short and go on."""
 import json
 import os
+import pathlib
 import shutil
 import signal
+import subprocess
+import sys
 
 import numpy
 import pytest
 
 import palpate
 from cluster import wait_for
+from conftest import AXES, ENVIRONMENT
 from palpate import PalpateError, Scene
 from palpate.sweeps import Grid, sweep
 from palpate.sweeps.drive import _CtrlC
@@ -168,6 +172,16 @@ def test_a_driver_that_is_killed_goes_on_from_what_is_done(command, tmp_path):
     code, out, err = one.run()
     assert code == 0 and f'{before} of 20 chunks were done before' in err, err
     assert f'hash {sweep(BALL, GRID, out=tmp_path / "b.zarr", size=5000, workers=2, quiet=True).hash}' in out
+
+
+def test_the_command_that_is_installed_sweeps(tmp_path):
+    """Its workers are spawned: they read the script that began them, and must not begin a sweep of their own."""
+    script = pathlib.Path(__file__).resolve().parents[2] / 'scripts/debian/palpate-sweep'
+    scene = tmp_path / 'scene.json'
+    scene.write_text(json.dumps(BALL))
+    words = [sys.executable, script, scene, '--out', tmp_path / 'out.zarr', *AXES, '--workers', '2']
+    done = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0 and 'hash ' in done.stdout, done.stderr[-2000:]
 
 
 def test_ctrl_c_leaves_what_is_done_and_says_so(command):
