@@ -109,8 +109,9 @@ std::string doubt(const LatticeMesh& own, std::initializer_list<const std::vecto
     const Vec3 side = kBeside * glm::normalize(glm::cross(b - a, c - a)), middle = (a + b + c) / 3.0;
     if (open(middle + side) && open(middle - side)) ++doubtful;
   }
-  return fmt::format("; {} of {} triangles of the {} that touch it {} where that is in doubt",
-                     doubtful == 0 ? "none" : fmt::format("{}", doubtful), asked, own_name,
+  return fmt::format("; {} of {} triangles of the {} that touch it{} {} where that is in doubt",
+                     doubtful == 0 ? "none" : fmt::format("{}", doubtful), ids.size(), own_name,
+                     asked < ids.size() ? fmt::format(", of which {} were looked at,", asked) : "",
                      doubtful > 1 ? "lie" : "lies");
 }
 
@@ -168,7 +169,8 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
        {std::pair{mean(geometry.tool_surface), "tool"}, {mean(geometry.mockup_surface), "mock-up"}})
     if (thickness > 0 && thickness < least)
       out.bodies.push_back(
-          fmt::format("walls of the {} are {:.2g} mm thick on the mean; thinner than {:.2g} mm the device's "
+          fmt::format("walls of the {} are {:.2g} mm thick on the mean (twice its volume by its surface); "
+                      "thinner than {:.2g} mm the device's "
                       "{:g} N push through them where they meet on {:.3g} mm² or less",
                       body, thickness * 1000, least * 1000, force, geometry.reference_area_m2 * 1e6));
   return out;

@@ -67,8 +67,8 @@ class Triangulator {
       report.notes.push_back(fmt::format("{} faces gave no triangles, the first is face {} of '{}'", flat_,
                                          first_flat_, flat_path_));
     report.notes.push_back(fmt::format(
-        "{} faces became triangles, about {:.4g} {} from them at most, {:.4g}° between neighbours", faces_,
-        *deflection, unit_name_, tessellation.angle_deg));
+        "{} faces became triangles, to lie within about {:.4g} {} of them, {:.4g}° between neighbours",
+        faces_, *deflection, unit_name_, tessellation.angle_deg));
     return std::move(mesh_);
   }
 

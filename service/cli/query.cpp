@@ -157,8 +157,8 @@ Result<void> query_command(const QueryOptions& options, const Parts& parts) {
                     unsettled, poses.size()));
   if (directionless > 0)
     console.note(
-        fmt::format("{} of {} poses are in contact with nothing that says which way (flag no_direction): "
-                    "they give no force",
+        fmt::format("{} of {} poses are in touch where nothing tells the way out, as between open surfaces "
+                    "(flag no_direction): they give no force",
                     directionless, poses.size()));
   if (truncated > 0)
     console.note(fmt::format("{} of {} poses were truncated and give no force: {} was too small", truncated,

@@ -416,7 +416,9 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   if (out.no_direction_frames > 0) {
     note(std::to_string(out.no_direction_frames) +
          (out.no_direction_frames > 1 ? " frames were" : " frame was") +
-         " in contact with nothing that says which way, and gave no force of it; the first at tick " +
+         " in touch where nothing tells the way out, as between open surfaces, and gave no force; the first "
+         "at "
+         "tick " +
          std::to_string(out.no_direction_tick) + ", the tool at " + position_text(out.no_direction_pose));
   }
   if (run.scene.start_contacts == StartContacts::kIgnoreInitial) {
@@ -464,7 +466,9 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   if (out.dropped_ticks > 0)
     note(std::to_string(out.dropped_ticks) + " ticks are missing from the recording: it fell behind");
   if (out.dropped_frames > 0)
-    note(std::to_string(out.dropped_frames) + " frames are missing from the recording: it fell behind");
+    note(std::to_string(out.dropped_frames) +
+         " frames are missing from the recording, which fell behind: charts of frames run straight on across "
+         "them");
   return out;
 }
 

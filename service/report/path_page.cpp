@@ -33,6 +33,9 @@ std::string tile(const std::string& value, const std::string& what) {
   return "<div class=\"tile\"><b>" + value + "</b><span>" + what + "</span></div>";
 }
 
+/// Triangles meet, and no sample of either body lies in the other.
+bool has_unknown_depth(const PathMoment& moment) { return moment.depth_m == 0.0; }
+
 double tool_size(const SceneGeometry& geometry) {
   const Int3 size = geometry.tool.box_max - geometry.tool.box_min;
   return geometry.lattice.step_m * std::max({size.x, size.y, size.z});
@@ -128,6 +131,17 @@ std::string path_page(const LoadedScene& scene, const PathReport& report, const 
         "<div class=\"notes\"><p>{} motions run along so near to the mock-up that they were left where they "
         "stood: they count as not clear.</p></div>",
         undecided);
+  if (report.without_depth > 0)
+    body += fmt::format(
+        "<div class=\"notes\"><p>At {} of {} poses triangles meet and no sample of either body lies in the "
+        "other: no depth is known there to hold against the tolerance, and the contact does not count "
+        "(sheets, "
+        "or surfaces that coincide).</p></div>",
+        report.without_depth, report.moments.size());
+  if (!report.closest && !report.deepest)
+    body +=
+        "<p class=\"lead\" style=\"margin-top:14px\">At no pose is the tool in touch, or so near that its "
+        "distance was measured.</p>";
   if (!report.first_static.empty() || !report.first_tool.empty())
     body += "<p class=\"lead\" style=\"margin-top:14px\">First to come together: " +
             pair_text(report.first_tool, report.first_static) + ".</p>";
@@ -138,8 +152,10 @@ std::string path_page(const LoadedScene& scene, const PathReport& report, const 
     if (m.clearance.kind == Clearance::Kind::kFurther) return std::nullopt;
     return m.clearance.steps * step;
   });
-  body += chart(report, "Depth of contact", "depth",
-                [](const PathMoment& m) { return std::optional(m.depth_m.value_or(0)); });
+  body += chart(report, "Depth of contact", "depth", [](const PathMoment& m) -> std::optional<double> {
+    if (has_unknown_depth(m)) return std::nullopt;
+    return m.depth_m.value_or(0);
+  });
   if (report.first_screw && report.first_pose) {
     // Where it comes together: the nearest moment's witnesses, if that is apart.
     PathMoment first = report.moments[*report.first_screw];
@@ -169,7 +185,9 @@ std::string path_page(const LoadedScene& scene, const PathReport& report, const 
         m.clearance.kind == Clearance::Kind::kFurther    ? "further"
         : m.clearance.kind == Clearance::Kind::kTouching ? (m.touches ? "touches" : "within tolerance")
                                                          : length_text(m.clearance.steps * step),
-        m.depth_m ? length_text(*m.depth_m) : "",
+        has_unknown_depth(m) ? "unknown"
+        : m.depth_m          ? length_text(*m.depth_m)
+                             : "",
         m.first_contact
             ? fmt::format("{:.4f}", (i == 0 ? 0.0 : static_cast<double>(i) - 1) + *m.first_contact)
             : "",

@@ -84,10 +84,11 @@ Json provenance_rows(const Provenance& provenance) {
 
 /// The scene at each numbered stage; of a run without stages at its strongest contact.
 Json pictures(const LoadedScene& loaded, const ReportSeries& series) {
-  const bool numbered = series.stages().upper_bound(0) != series.stages().end();
+  const std::map<std::int32_t, StageFigures> stages = series.stages();
+  const bool numbered = stages.upper_bound(0) != stages.end();
   std::vector<Pose> poses;
   Json out = Json::array();
-  for (const auto& [stage, figures] : series.stages()) {
+  for (const auto& [stage, figures] : stages) {
     if (numbered && stage <= 0) continue;
     poses.push_back(figures.pose);
     out.push_back({{"stage", stage},

@@ -192,7 +192,7 @@
   const most = energy.reduce((m, p) => Math.max(m, p[1]), 0),
         least = energy.reduce((m, p) => Math.min(m, p[1]), 0);
   byId('energy-lead').textContent =
-      'What the device’s force and torque have done on the hand, each held for its tick. Below 0 the hand has put in more than it has got back; a passive contact never rises above. ' +
+      'What the device’s force and torque have done on the hand, each held for its tick. Below 0 the hand has put in more than it has got back; a passive contact never rises above, but where the tool starts in one, which gives back what is stored in it. ' +
       'Here the hand has put in ' + number(-least) + ' mJ at most, got ' + number(most) +
       ' mJ at most, and ends at ' + number(energy.length ? energy[energy.length - 1][1] : 0) + ' mJ.';
   overTime('energy', {

@@ -106,7 +106,8 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
     sections_.push_back({tick.stage, tick.time_s, tick.time_s});
   sections_.back().end_s = tick.time_s + kTickSeconds;
 
-  if (figures_.empty()) figures_[tick.stage] = early_;
+  for (; !waiting_.empty() && waiting_.front().time_s < sections_.back().end_s; waiting_.pop_front())
+    add_frame(waiting_.front(), figures_);
   StageFigures& figures = figures_[tick.stage];
   ++figures.ticks;
   if (const double force = glm::length(tick.response.force);
@@ -149,17 +150,30 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
                      [&](const Contacts::StageTime& time) { return time.stage == stage.first; }))
       stage.second.push(time_s, 0);
 
-  // A frame belongs to the stage of its tick, whose record may still be on its way: the newest stage stands
-  // in, the first one for now.
-  StageFigures& figures = sections_.empty() ? early_ : figures_[sections_.back().stage];
+  // A frame belongs to the stage of its tick, whose record may still be on its way.
+  waiting_.push_back({time_s, frame.total_us, static_cast<std::size_t>(with_force),
+                      contacts.cst.size() + contacts.bst.size() + contacts.est.size() + contacts.cmt.size() +
+                          contacts.bmt.size() + contacts.imt.size()});
+  return {};
+}
+
+/// To the figures of the stage in which it lies; before the first tick that is the first one.
+void ReportSeries::add_frame(const FrameFigures& frame, std::map<std::int32_t, StageFigures>& to) const {
+  auto section = sections_.rbegin();
+  while (std::next(section) != sections_.rend() && frame.time_s < section->begin_s) ++section;
+  StageFigures& figures = to[section->stage];
   ++figures.frames;
-  figures.areas_max = std::max(figures.areas_max, static_cast<std::size_t>(with_force));
-  figures.triangles_max =
-      std::max(figures.triangles_max, contacts.cst.size() + contacts.bst.size() + contacts.est.size() +
-                                          contacts.cmt.size() + contacts.bmt.size() + contacts.imt.size());
+  figures.areas_max = std::max(figures.areas_max, frame.areas);
+  figures.triangles_max = std::max(figures.triangles_max, frame.triangles);
   figures.frame_us_sum += frame.total_us;
   figures.frame_us_max = std::max(figures.frame_us_max, frame.total_us);
-  return {};
+}
+
+std::map<std::int32_t, StageFigures> ReportSeries::stages() const {
+  std::map<std::int32_t, StageFigures> out = figures_;
+  if (!sections_.empty())
+    for (const FrameFigures& frame : waiting_) add_frame(frame, out);
+  return out;
 }
 
 std::string ReportSeries::json(const std::vector<std::string>& stage_names) const {
@@ -207,7 +221,7 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
   out += stages.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   out += ",\"stage_figures\":";
   nlohmann::json rows = nlohmann::json::array();
-  for (const auto& [stage, figures] : figures_)
+  for (const auto& [stage, figures] : this->stages())
     rows.push_back({{"stage", stage},
                     {"name", stage > 0 ? stage_text(stage, stage_names) : "between"},
                     {"seconds", static_cast<double>(figures.ticks) * kTickSeconds},

@@ -83,19 +83,25 @@ class ReportSeries : public RunObserver {
   std::string json(const std::vector<std::string>& stage_names) const;
 
   /// By number of the stage; 0 is what lies between.
-  const std::map<std::int32_t, StageFigures>& stages() const { return figures_; }
+  std::map<std::int32_t, StageFigures> stages() const;
 
  private:
   struct Section {
     std::int32_t stage;
     double begin_s, end_s;
   };
+  struct FrameFigures {
+    double time_s, total_us;
+    std::size_t areas, triangles;
+  };
+  void add_frame(const FrameFigures& frame, std::map<std::int32_t, StageFigures>& to) const;
+
   std::map<std::string, Envelope> curves_;    ///< by name: "response_force_x", "cst", "frame_us", …
   std::vector<std::string> time_stages_;      ///< in the order of a frame
   std::map<std::string, Envelope> stage_us_;  ///< by the back end's name of the stage
   std::vector<Section> sections_;
   std::map<std::int32_t, StageFigures> figures_;
-  StageFigures early_;  ///< of frames before the first tick
+  std::deque<FrameFigures> waiting_;  ///< frames whose ticks have not come yet, oldest first
   Highlight highlight_;
   WorkGiven work_;
   ForceSteps steps_sent_, steps_without_;  ///< with the control law, and without

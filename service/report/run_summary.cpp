@@ -118,7 +118,10 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const SessionSumm
        fmt::format("{:.0f} ticks median, {:.0f} p99, {:.0f} at most", summary.result_age_ticks.p50,
                    summary.result_age_ticks.p99, summary.result_age_ticks.max));
   line("frames",
-       fmt::format("{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames),
+       fmt::format("{}{}: {:.3g} ms median, {:.3g} ms p99, {:.3g} ms at most", count_text(summary.frames),
+                   summary.dropped_frames > 0
+                       ? fmt::format(", {} of them not recorded", count_text(summary.dropped_frames))
+                       : "",
                    summary.frame_us.p50 / 1000, summary.frame_us.p99 / 1000, summary.frame_us.max / 1000));
   std::string stages;
   for (const int stage : summary.stages_reached)

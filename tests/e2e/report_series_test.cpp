@@ -149,6 +149,44 @@ TEST(WorkGiven, IsForceTimesWayAndTorqueTimesTurnAboutTheCentreOfMass) {
   EXPECT_NEAR(work.push(tick), 1.6, 1e-12);
 }
 
+TEST(ReportSeries, AFrameBelongsToTheStageOfItsTickWhicheverComesFirst) {
+  const auto tick_at = [](int i) {
+    TickRecord tick = tick_with_force(i, 1);
+    tick.time_s = i * 1e-3;
+    tick.stage = i < 100 ? 1 : 2;
+    return tick;
+  };
+  const Pose pose;
+  const LatticePose lattice_pose{};
+  const Contacts contacts;
+  const ContactResponse response;
+  const auto frame_at = [&](int i) {
+    return FrameRecord{i, pose, lattice_pose, contacts, response, static_cast<double>(i)};
+  };
+  // Records of frames may all come first, all last, or in turns; some are lost.
+  for (const int order : {0, 1, 2}) {
+    ReportSeries series;
+    const auto frames = [&] {
+      for (int i = 0; i < 200; i += 10) EXPECT_TRUE(series.on_frame(frame_at(i)));
+    };
+    if (order == 0) frames();
+    for (int i = 0; i < 200; ++i) {
+      if (order == 2 && i % 10 == 0) {
+        EXPECT_TRUE(series.on_frame(frame_at(i)));
+      }
+      EXPECT_TRUE(series.on_tick(tick_at(i)));
+    }
+    if (order == 1) frames();
+    const auto stages = series.stages();
+    ASSERT_EQ(stages.size(), 2u) << order;
+    for (const auto& [stage, figures] : stages) {
+      EXPECT_EQ(figures.frames, 10) << order << ": " << stage;
+      EXPECT_EQ(figures.frame_us_max, stage == 1 ? 90 : 190) << order << ": " << stage;
+      EXPECT_EQ(figures.frame_us_sum, stage == 1 ? 450 : 1450) << order << ": " << stage;
+    }
+  }
+}
+
 RecordedRun run_of(int ticks, double force, const char* summary) {
   RecordedRun run{.folder = "run", .summary = summary, .ticks = {}};
   for (int i = 0; i < ticks; ++i) {

@@ -416,7 +416,7 @@ TEST_F(Cad, BrepIsInItsOwnUnit) {
   const std::string path = folder_.path("block.BREP");
   ASSERT_TRUE(BRepTools::Write(Engine().block(), path.c_str()));
   read(path);
-  EXPECT_THAT(report_.notes, Contains(HasSubstr(" file units from them")));
+  EXPECT_THAT(report_.notes, Contains(HasSubstr(" file units of them")));
   const Mesh mesh = read(path, {}, 0.001);
   ASSERT_THAT(paths(mesh), ElementsAre("block"));
   EXPECT_NEAR(box_of(mesh, mesh.parts[0]).high.x, 0.1, 1e-9);

@@ -189,7 +189,7 @@ TEST(Session, CountsFramesWithoutADirectionAndKeepsTheFirst) {
   EXPECT_GT(summary->no_direction_tick, 200);
   EXPECT_LT(summary->no_direction_pose.position.z, 0);
   ASSERT_FALSE(summary->notes.empty());
-  EXPECT_THAT(summary->notes.front(), HasSubstr("in contact with nothing that says which way"));
+  EXPECT_THAT(summary->notes.front(), HasSubstr("in touch where nothing tells the way out"));
 }
 
 /// The half-space in three patches of which the tool touches the second and third wherever it is below −4 mm,

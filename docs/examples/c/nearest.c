@@ -1,5 +1,6 @@
 /* Lowers a tool along z until it touches, and says where. Built against the installed library:
  *   cc nearest.c $(pkg-config --cflags --libs palpate) -o nearest && ./nearest scene.json 0.1 */
+#include <math.h>
 #include <palpate.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,7 +29,11 @@ int main(int argc, char** argv) {
     palpate_scene_close(scene);
     return failed(error);
   }
-  printf("engine %s: %.6f m free, ", palpate_scene_engine(scene), gap);
+  printf("engine %s: ", palpate_scene_engine(scene));
+  if (isinf(gap))
+    printf("further than is measured, ");  /* beyond the scene's reach */
+  else
+    printf("%.6f m free, ", gap);
   if (kind == PALPATE_MOTION_CLEAR)
     printf("clear all the way\n");
   else

@@ -32,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 using Parser = http::request_parser<http::buffer_body>;
 
 constexpr std::size_t kPiece = 64 << 10;
+constexpr std::size_t kLongestTarget = 2048;  // characters (chosen)
 constexpr auto kLingering =
     std::chrono::seconds(3);  ///< chosen: hundreds of MB from next door, many from afar
 
@@ -198,7 +199,14 @@ class HttpConnection {
       refusal_ = Problem{400, "bad-request", "only HTTP/1.1 and 1.0 are spoken here", ""};
       co_return co_await refuse();
     }
-    if (head.target().size() > 2048 || !decode_target(view(head.target()), request)) {
+    if (head.target().size() > kLongestTarget) {
+      refusal_ = Problem{431, "header",
+                         "the target has " + std::to_string(head.target().size()) +
+                             " characters; it may have " + std::to_string(kLongestTarget),
+                         "target"};
+      co_return co_await refuse();
+    }
+    if (!decode_target(view(head.target()), request)) {
       refusal_ = Problem{400, "bad-request", "the target is no path that is taken here", "target"};
       co_return co_await refuse();
     }

@@ -46,7 +46,7 @@ std::variant<const Route*, Problem> Router::find(const HttpRequest& request, std
     if (!fits(route.pattern, request.segments)) continue;
     if (route.method == method) return &route;
     if (allowed.find(route.method) == std::string::npos)
-      allowed += (allowed.empty() ? "" : ", ") + route.method;
+      allowed += (allowed.empty() ? "" : ", ") + route.method + (route.method == "GET" ? ", HEAD" : "");
   }
   if (allowed.empty())
     return Problem{404, "not-found", "there is nothing at '" + shown_text(request.path) + "'", ""};
