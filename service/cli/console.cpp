@@ -18,7 +18,7 @@ namespace palpate {
 namespace {
 
 std::atomic<bool> interrupt_seen{false};
-std::atomic<std::int64_t> interrupt_ns{0};
+std::atomic<std::int64_t> interrupt_ns{0};  // when it came first; 0: it has not
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
 // Signals so close to each other are one: `timeout` sends its own to the program and then to its group
@@ -29,9 +29,10 @@ extern "C" void on_interrupt(int number) {
   timespec time{};
   clock_gettime(CLOCK_MONOTONIC, &time);
   const std::int64_t now = std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-  if (!interrupt_seen.exchange(true, std::memory_order_relaxed)) {
-    interrupt_ns.store(now, std::memory_order_relaxed);
-  } else if (now - interrupt_ns.load(std::memory_order_relaxed) > kOneSignalNs) {
+  std::int64_t first = 0;
+  if (interrupt_ns.compare_exchange_strong(first, now)) {
+    interrupt_seen.store(true, std::memory_order_relaxed);
+  } else if (now - first > kOneSignalNs) {
     std::signal(number, SIG_DFL);  // a second signal ends a program that hangs
     std::raise(number);
   }

@@ -416,9 +416,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
   if (out.no_direction_frames > 0) {
     note(std::to_string(out.no_direction_frames) +
          (out.no_direction_frames > 1 ? " frames were" : " frame was") +
-         " in touch where nothing tells the way out, as between open surfaces, and gave no force; the first "
-         "at "
-         "tick " +
+         " in touch where nothing tells the way out, as between open surfaces, and gave no force; "
+         "the first at tick " +
          std::to_string(out.no_direction_tick) + ", the tool at " + position_text(out.no_direction_pose));
   }
   if (run.scene.start_contacts == StartContacts::kIgnoreInitial) {

@@ -135,8 +135,7 @@ std::string path_page(const LoadedScene& scene, const PathReport& report, const 
     body += fmt::format(
         "<div class=\"notes\"><p>At {} of {} poses triangles meet and no sample of either body lies in the "
         "other: no depth is known there to hold against the tolerance, and the contact does not count "
-        "(sheets, "
-        "or surfaces that coincide).</p></div>",
+        "(sheets, or surfaces that coincide).</p></div>",
         report.without_depth, report.moments.size());
   if (!report.closest && !report.deepest)
     body +=
