@@ -110,8 +110,8 @@ std::string doubt(const LatticeMesh& own, std::initializer_list<const std::vecto
     if (open(middle + side) && open(middle - side)) ++doubtful;
   }
   return fmt::format("; {} of {} triangles of the {} that touch it{} {} where that is in doubt",
-                     doubtful == 0 ? "none" : fmt::format("{}", doubtful), ids.size(), own_name,
-                     asked < ids.size() ? fmt::format(", of which {} were looked at,", asked) : "",
+                     doubtful == 0 ? "none" : fmt::format("{}", doubtful), asked, own_name,
+                     asked < ids.size() ? fmt::format(" (looked at: {} of {})", asked, ids.size()) : "",
                      doubtful > 1 ? "lie" : "lies");
 }
 

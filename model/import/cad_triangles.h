@@ -7,6 +7,7 @@
 
 namespace palpate {
 
+/// What lengths of a CAD file are in.
 struct FileUnit {
   double metres;     ///< per unit of the shapes
   const char* name;  ///< of what they come in, for sentences: "m", or "file units" where nobody says which

@@ -17,10 +17,11 @@ namespace {
 
 constexpr std::size_t kMostAtOnce = 4096;  // poses between two looks at the keyboard (chosen)
 
+/// Of one pose.
 struct Verdict {
-  bool touches = false;
+  bool touches = false;  ///< under the tolerance
   Clearance clearance;
-  std::string engine;
+  std::string engine;  ///< that answered
 };
 
 }  // namespace

@@ -79,7 +79,7 @@ def test_signals_at_once_are_one():
     scene = folder.save()
     poses = folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n0,0,0.018,0,0,0,1\n0.002,0,0.018,0,0,0,1\n')
     asked = ('bench', 'force', scene, '--poses', poses, '--frames', '100000', '--out', folder / 'out')
-    code, said = at_terminal(*asked, until=b'poses', apart_s=(0.02,))
+    code, said = at_terminal(*asked, until=b'poses', apart_s=5 * (0.001,))
     expect(code == 1 and 'interrupted' in said, f'exit {code}: {said}')
 
 
