@@ -74,6 +74,8 @@ std::string bar(double done) {
 }  // namespace
 
 void catch_interrupts() {
+  interrupt_seen = false;
+  interrupt_ns = 0;
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 }

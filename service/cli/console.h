@@ -51,8 +51,8 @@ class Console {
   std::chrono::steady_clock::time_point last_draw_{};
 };
 
-/// From now on SIGINT and SIGTERM only raise a flag; a second one, a quarter of a second later or more, ends
-/// the process as usual.
+/// From now on SIGINT and SIGTERM only raise a flag, which is down until then; a second one, a quarter of a
+/// second later or more, ends the process as usual.
 void catch_interrupts();
 bool interrupted() noexcept;
 const std::atomic<bool>& interrupt_flag() noexcept;

@@ -47,11 +47,7 @@ void PrintTo(Loss loss, std::ostream* out) { *out << name_of(loss); }
 
 /// What the two sides of a run know of each other.
 struct Trial {
-  explicit Trial(Loss what) : loss(what) {
-    // The flag is the program's, which sees one signal in its life; a second test needs it down again.
-    const_cast<std::atomic<bool>&>(interrupt_flag()).store(false);
-    catch_interrupts();
-  }
+  explicit Trial(Loss what) : loss(what) { catch_interrupts(); }
   const Loss loss;
   std::atomic<bool> now{false};    ///< it is to go wrong
   std::atomic<bool> wrong{false};  ///< it has
