@@ -15,6 +15,7 @@ namespace {
 constexpr std::string_view kFreeHeader = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,stage";
 constexpr std::string_view kGuidedHeader = "time_s,travel_m,rx_rad,ry_rad,rz_rad,stage";
 constexpr std::string_view kGuideHeader = "travel_m,x_m,y_m,z_m,qx,qy,qz,qw";
+constexpr std::string_view kUntimedHeader = "x,y,z,qx,qy,qz,qw";  ///< of poses that a planner writes
 constexpr double kLongestTravel = 1e4;  ///< m of travel; a scene is below 100 m or warned about
 
 Result<Pose> unit_pose(const CsvRow& row) {
@@ -39,6 +40,16 @@ Result<PathPoint> guided_point(const CsvRow& row) {
   point.travel_m = values[0];
   point.pose = {{values[0], 0, 0}, rotation_about(Vec3(values[1], values[2], values[3]))};
   return point;
+}
+
+/// Without a byte order mark and the end of the line; empty where there is none.
+std::string first_line(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  std::getline(in, line);
+  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+  if (line.ends_with('\r')) line.pop_back();
+  return line;
 }
 
 void add_pose(std::string& out, const Pose& pose) {
@@ -74,19 +85,18 @@ Result<std::vector<PathPoint>> read_path(const std::string& file, bool guided) {
     path.push_back(point);
     return {};
   };
-  if (auto read = read_csv(file, {guided ? kGuidedHeader : kFreeHeader}, nullptr, take); !read)
-    return read.error();
+  if (auto read = read_csv(file, {guided ? kGuidedHeader : kFreeHeader}, nullptr, take); !read) {
+    Error fault = read.error();
+    if (first_line(file).starts_with(kUntimedHeader))
+      fault.sentence += " (poses without times are for \"query\" and \"path\")";
+    return fault;
+  }
   if (path.empty()) return bad_value(file + " has no point");
   return path;
 }
 
 std::optional<bool> guided_header(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string line;
-  std::getline(in, line);
-  std::string_view header = line;
-  if (header.starts_with("\xEF\xBB\xBF")) header.remove_prefix(3);
-  if (header.ends_with('\r')) header.remove_suffix(1);
+  const std::string header = first_line(file);
   if (header == kGuidedHeader) return true;
   if (header == kFreeHeader) return false;
   return std::nullopt;

@@ -30,9 +30,10 @@ struct FrameSlot {
   Contacts contacts;
   ContactResponse response;
   double total_us = 0;
+  bool after_gap = false;  ///< as FrameRecord's
 
   FrameRecord record() const {
-    return {sample.tick, sample.pose, lattice_pose, contacts, response, total_us};
+    return {sample.tick, sample.pose, lattice_pose, contacts, response, total_us, after_gap};
   }
 };
 

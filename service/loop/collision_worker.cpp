@@ -61,6 +61,7 @@ void CollisionWorker::run() noexcept {
   set_nice(kNiceContact);
   set_slice(may_be_realtime() ? kSliceContactUs : kSliceBesideLoopUs);
   LawResult result;
+  std::uint64_t dropped_before = 0;  // up to the last record
   std::uint32_t seen = 0;
   while (!stop_.load(std::memory_order_acquire)) {
     // The count is read before the mailbox, so a pose that comes in between ends the wait at once.
@@ -81,6 +82,8 @@ void CollisionWorker::run() noexcept {
     }
     results_.publish(result);
     if (recorded) {
+      slot->after_gap = dropped_frames_ != dropped_before;
+      dropped_before = dropped_frames_;
       queues_->filled.push(slot);
     } else {
       ++dropped_frames_;

@@ -36,6 +36,8 @@ struct FrameRecord {
   const Contacts& contacts;
   const ContactResponse& response;
   double total_us = 0;  ///< wall time from pose in to wrench out
+  /// Whether frames between the record before and this one were answered and not recorded.
+  bool after_gap = false;
 };
 
 /// Follows a run. Called by one thread at a time, never by the control loop's or the collision worker's

@@ -347,6 +347,13 @@ std::optional<RealtimeOutlook> outlook(const Run& run, const SessionSummary& sum
     out.sentence += " (in this run " + number(std::round(summary.result_age_ticks.p50)) + ", " +
                     number(std::round(summary.result_age_ticks.p99)) + ", " +
                     number(std::round(summary.result_age_ticks.max)) + ")";
+  if (virtual_time && !out.kept_up && run.scene.response.budget_us > 0)
+    out.sentence +=
+        "; real time samples coarser where that keeps frames to response.budget_us, virtual time "
+        "never does";
+  if (!virtual_time && summary.coarse_frames > 0)
+    out.sentence += "; " + std::to_string(summary.coarse_frames) + " of " + std::to_string(summary.frames) +
+                    " frames were sampled coarser";
   return out;
 }
 
@@ -412,7 +419,7 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
          " frames were sampled coarser than their contact asks for, with " +
          number(std::floor(100 * out.coarsest_share)) +
          " % of the samples at the least, to take no longer than response.budget_us, " +
-         number(run.scene.response.budget_us) + " us");
+         number(run.scene.response.budget_us) + " µs");
   if (out.no_direction_frames > 0) {
     note(std::to_string(out.no_direction_frames) +
          (out.no_direction_frames > 1 ? " frames were" : " frame was") +
@@ -466,8 +473,7 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
     note(std::to_string(out.dropped_ticks) + " ticks are missing from the recording: it fell behind");
   if (out.dropped_frames > 0)
     note(std::to_string(out.dropped_frames) +
-         " frames are missing from the recording, which fell behind: charts of frames run straight on across "
-         "them");
+         " frames are missing from the recording, which fell behind: charts of frames have gaps there");
   return out;
 }
 

@@ -143,19 +143,18 @@ const Plot = (() => {
       if (!this.spec.stacked || this.kind !== 'linear') return shown;
       const stack = shown.filter((s) => s.stack);
       if (!stack.length) return shown;
-      const longest =
-          stack.reduce((a, b) => (b.points.length > a.points.length ? b : a)).points.map((p) => p[0]);
+      const longest = stack.reduce((a, b) => (b.points.length > a.points.length ? b : a)).points;
       const base = longest.map(() => 0);
       return shown.map((s) => {
         if (!s.stack) return s;
         const low = [...base];
         let k = 0;
-        const points = longest.map((x, i) => {
+        const points = longest.map(([x, y], i) => {
           while (k + 1 < s.points.length && s.points[k + 1][0] <= x) ++k;
           base[i] += s.points[k][0] <= x ? s.points[k][1] ?? 0 : 0;
-          return [x, base[i]];
+          return [x, y === null ? null : base[i]];
         });
-        return {...s, points, below: longest.map((x, i) => [x, low[i]])};
+        return {...s, points, below: longest.map(([x], i) => [x, low[i]])};
       });
     }
 
@@ -188,7 +187,7 @@ const Plot = (() => {
         high = 1;
       }
       if (this.kind === 'log') {
-        low = 10 ** Math.floor(Math.log10(low) + 1e-9);
+        low = spec.floor ?? 10 ** Math.floor(Math.log10(low) + 1e-9);
         high = 10 ** Math.ceil(Math.log10(high * 1.05));
         if (low >= high) high = low * 10;
       } else {
@@ -255,6 +254,18 @@ const Plot = (() => {
       ];  // a picture in the picture cuts off what lies beyond
       out.push(`<svg x="${box[0]}" y="${box[1]}" width="${box[2]}" height="${box[3]}" viewBox="${
           box.join(' ')}" fill="none" stroke-linejoin="round">`);
+      // The stretches without a null.
+      const pieces = (points, from, to) => {
+        const found = [];
+        for (let i = from; i < to; ++i)
+          if (points[i][1] !== null) {
+            if (found.length && found[found.length - 1][1] === i)
+              found[found.length - 1][1] = i + 1;
+            else
+              found.push([i, i + 1]);
+          }
+        return found;
+      };
       const line = (points, from, to, stepped) => {
         let d = '', pen = false, last = 0;
         for (let i = from; i < to; ++i) {
@@ -274,11 +285,14 @@ const Plot = (() => {
       for (const s of [...shapes].sort((p, q) => (q.order ?? 0) - (p.order ?? 0))) {
         const ink = `var(--${s.colour})`, path = line(s.points, s.from, s.to, s.stepped);
         if (s.below) {
-          const back = s.below.slice(s.from, s.to)
-                           .reverse()
-                           .map(([x, y]) => `L${at(x).toFixed(1)} ${up(y).toFixed(1)}`)
-                           .join('');
-          out.push(`<path d="${path}${back}Z" fill="${ink}" fill-opacity="0.4"/>`);
+          for (const [from, to] of pieces(s.points, s.from, s.to)) {
+            const back = s.below.slice(from, to)
+                             .reverse()
+                             .map(([x, y]) => `L${at(x).toFixed(1)} ${up(y).toFixed(1)}`)
+                             .join('');
+            out.push(`<path d="${line(s.points, from, to, s.stepped)}${back}Z" fill="${
+                ink}" fill-opacity="0.4"/>`);
+          }
         } else if (s.fill && s.to > s.from) {
           out.push(`<path d="${path}V${floor}H${at(s.points[s.from][0]).toFixed(1)}Z" fill="${
               ink}" fill-opacity="0.3"/>`);
@@ -460,15 +474,17 @@ const Plot = (() => {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   };
-  // Steps between values that are counted: [[low, high, count], …] as a line with a floor at half a count.
+  // Steps between values that are counted: [[low, high, count], …] as a line; on a logarithmic axis what has
+  // none lies on the axis, which begins at half a count.
+  const kNone = 0.5;
   const outline = (bins) => {
-    const out = bins.length ? [[bins[0][0], 0.5]] : [];
+    const out = bins.length ? [[bins[0][0], kNone]] : [];
     bins.forEach(([low, high, n], i) => {
-      if (i > 0 && bins[i - 1][1] < low) out.push([low, 0.5]);
-      out.push([low, n], [high, n]);
-      if (i + 1 === bins.length || bins[i + 1][0] > high) out.push([high, 0.5]);
+      if (i > 0 && bins[i - 1][1] < low) out.push([low, kNone]);
+      out.push([low, Math.max(n, kNone)], [high, Math.max(n, kNone)]);
+      if (i + 1 === bins.length || bins[i + 1][0] > high) out.push([high, kNone]);
     });
     return out;
   };
-  return {group, outline, number, draw: (figure, spec, shared) => new Chart(figure, spec, shared)};
+  return {group, kNone, outline, number, draw: (figure, spec, shared) => new Chart(figure, spec, shared)};
 })();

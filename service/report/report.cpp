@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -27,6 +28,12 @@ Json summary_rows(const SessionSummary& summary, const std::vector<std::string>&
   return rows;
 }
 
+/// As written by hand: 2000, not 2e+03.
+std::string three_digits(double value) {
+  if (!(std::fabs(value) >= 1000)) return fmt::format("{:.3g}", value);
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return fmt::format("{:.0f}", std::round(value / unit) * unit);
+}
 std::string millimetres(double metres) { return fmt::format("{:.4g} mm", metres * 1000); }
 
 Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
@@ -53,8 +60,8 @@ Json settings_rows(const LoadedScene& loaded, const ReportFacts& facts) {
   const CouplingSettings& coupling =
       scene.response.profile == Profile::kPaper ? couplings.areas : couplings.field;
   if (coupling.on() && scene.control.law == ForceLaw::kCorrected)
-    row("virtual coupling",
-        fmt::format("{:.3g} N/m, {:.3g} N·m/rad", coupling.stiffness_n_per_m, coupling.stiffness_nm_per_rad));
+    row("virtual coupling", fmt::format("{} N/m, {} N·m/rad", three_digits(coupling.stiffness_n_per_m),
+                                        three_digits(coupling.stiffness_nm_per_rad)));
   row("fade-in", fmt::format("{:g} ms", scene.control.fade_in_ms));
   row("watchdog", fmt::format("{:g} ms", scene.control.watchdog_ms));
   row("device limits", fmt::format("{:g} N, {:g} N·m", scene.device.max_force_n, scene.device.max_torque_nm));

@@ -135,7 +135,7 @@
     series: [{
       label: 'depth',
       colour: 'depth',
-      points: (curves.depth || []).map(([x, y]) => [x, y * 1000]),
+      points: (curves.depth || []).map(([x, y]) => [x, y === null ? null : y * 1000]),
       width: 1.3
     }]
   });
@@ -166,7 +166,8 @@
     shown.push({
       name: 'others',
       points: others[0].points.map(
-          ([x], i) => [x, others.reduce((sum, entry) => sum + (entry.points[i]?.[1] ?? 0), 0)])
+          ([x, y],
+           i) => [x, y === null ? null : others.reduce((sum, entry) => sum + (entry.points[i]?.[1] ?? 0), 0)])
     });
   overTime('time', {
     title: 'Time of a frame',
@@ -263,6 +264,7 @@
       xUnit: 'N',
       xLog: true,
       kind: 'log',
+      floor: Plot.kNone,
       fixed: true,
       height: 240,
       series: both.map(
@@ -295,6 +297,7 @@
       'In virtual time no tick is late.';
   const histogram = (id, spec, bins) => bins.length && Plot.draw(byId(id), {
     kind: 'log',
+    floor: Plot.kNone,
     fixed: true,
     height: 240,
     ...spec,

@@ -24,7 +24,56 @@ void append_point(double x, double y, std::string& out) {
     fmt::format_to(std::back_inserter(out), "[{:.7g},null]", x);
 }
 
+/// Writes a curve's points as JSON, with a null between two points that have a gap between them.
+class GappedLine {
+ public:
+  GappedLine(const Gaps& gaps, double span, std::string& out) : gaps_(gaps.seen_over(span)), out_(out) {
+    out_.push_back('[');
+  }
+  GappedLine(const GappedLine&) = delete;
+  GappedLine& operator=(const GappedLine&) = delete;
+  ~GappedLine() { out_.push_back(']'); }
+
+  void point(double x, double y) {
+    for (; next_ < gaps_.size() && gaps_[next_][1] <= x; ++next_) {
+      const auto [begin, end] = gaps_[next_];
+      if (any_ && last_x_ <= begin) append_point((begin + end) / 2, std::nan(""), out_), last_x_ = end;
+    }
+    append_point(x, y, out_);
+    any_ = true;
+    last_x_ = x;
+  }
+
+ private:
+  std::vector<std::array<double, 2>> gaps_;
+  std::string& out_;
+  std::size_t next_ = 0;
+  bool any_ = false;
+  double last_x_ = 0;
+};
+
 }  // namespace
+
+void Gaps::push(double begin, double end) {
+  if (gaps_.size() == kMost) {
+    std::vector<double> widths;
+    for (const auto& gap : gaps_) widths.push_back(gap[1] - gap[0]);
+    const auto middle = widths.begin() + kMost / 2;
+    std::nth_element(widths.begin(), middle, widths.end());
+    // Half of them are as long as the middle one or longer, so none that goes would be seen.
+    std::erase_if(gaps_, [&](const auto& gap) { return gap[1] - gap[0] <= *middle; });
+  }
+  gaps_.push_back({begin, end});
+}
+
+std::vector<std::array<double, 2>> Gaps::seen_over(double span) const {
+  std::vector<std::array<double, 2>> out;
+  std::copy_if(gaps_.begin(), gaps_.end(), std::back_inserter(out),
+               [&](const auto& gap) { return gap[1] - gap[0] >= kSeen * span; });
+  return out;
+}
+
+double Envelope::span() const { return bins_.empty() ? 0 : bins_.back().max_x - bins_.front().first_x; }
 
 void Envelope::push(double x, double y) {
   if (bins_.empty() || bins_.back().count >= bin_size_) {
@@ -56,20 +105,18 @@ void Envelope::merge_pairs() {
   bin_size_ *= 2;
 }
 
-void Envelope::append_extremes(std::string& out) const {
-  out.push_back('[');
+void Envelope::append_extremes(std::string& out, const Gaps& gaps) const {
+  GappedLine line(gaps, span(), out);
   for (const Bin& bin : bins_) {
     const bool rising = bin.min_x <= bin.max_x;
-    append_point(rising ? bin.min_x : bin.max_x, rising ? bin.min : bin.max, out);
-    if (bin.min != bin.max) append_point(rising ? bin.max_x : bin.min_x, rising ? bin.max : bin.min, out);
+    line.point(rising ? bin.min_x : bin.max_x, rising ? bin.min : bin.max);
+    if (bin.min != bin.max) line.point(rising ? bin.max_x : bin.min_x, rising ? bin.max : bin.min);
   }
-  out.push_back(']');
 }
 
-void Envelope::append_means(std::string& out) const {
-  out.push_back('[');
-  for (const Bin& bin : bins_) append_point(bin.first_x, bin.sum / bin.count, out);
-  out.push_back(']');
+void Envelope::append_means(std::string& out, const Gaps& gaps) const {
+  GappedLine line(gaps, span(), out);
+  for (const Bin& bin : bins_) line.point(bin.first_x, bin.sum / bin.count);
 }
 
 void Highlight::push(const TickRecord& tick) {
@@ -93,12 +140,12 @@ std::vector<TickRecord> Highlight::ticks() const {
 Result<void> ReportSeries::on_tick(const TickRecord& tick) {
   for (int i = 0; i < 3; ++i) {
     const char axis = kAxes[static_cast<std::size_t>(i)];
-    curves_[fmt::format("response_force_{}", axis)].push(tick.time_s, tick.response.force[i]);
-    curves_[fmt::format("response_torque_{}", axis)].push(tick.time_s, tick.response.torque[i]);
-    curves_[fmt::format("sent_force_{}", axis)].push(tick.time_s, tick.sent.force[i]);
-    curves_[fmt::format("sent_torque_{}", axis)].push(tick.time_s, tick.sent.torque[i]);
+    tick_curves_[fmt::format("response_force_{}", axis)].push(tick.time_s, tick.response.force[i]);
+    tick_curves_[fmt::format("response_torque_{}", axis)].push(tick.time_s, tick.response.torque[i]);
+    tick_curves_[fmt::format("sent_force_{}", axis)].push(tick.time_s, tick.sent.force[i]);
+    tick_curves_[fmt::format("sent_torque_{}", axis)].push(tick.time_s, tick.sent.torque[i]);
   }
-  curves_["energy"].push(tick.time_s, work_.push(tick));
+  tick_curves_["energy"].push(tick.time_s, work_.push(tick));
   steps_sent_.push(tick.sent.force);
   steps_without_.push(tick.uncontrolled.force);
   highlight_.push(tick);
@@ -120,9 +167,11 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
 
 Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
   const double time_s = static_cast<double>(frame.tick) * kTickSeconds;
+  if (frame.after_gap) frame_gaps_.push(last_frame_s_, time_s);
+  last_frame_s_ = time_s;
   const Contacts& contacts = frame.contacts;
   const auto count = [&](const char* name, std::size_t n) {
-    curves_[name].push(time_s, static_cast<double>(n));
+    frame_curves_[name].push(time_s, static_cast<double>(n));
   };
   count("cst", contacts.cst.size());
   count("bst", contacts.bst.size());
@@ -137,8 +186,8 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
   count("areas", static_cast<std::size_t>(with_force));
   double depth = 0;
   for (const AreaResponse& area : frame.response.areas) depth = std::max(depth, area.depth);
-  curves_["depth"].push(time_s, depth);
-  curves_["frame_us"].push(time_s, frame.total_us);
+  frame_curves_["depth"].push(time_s, depth);
+  frame_curves_["frame_us"].push(time_s, frame.total_us);
   for (const Contacts::StageTime& time : contacts.times) {
     auto [curve, is_new] = stage_us_.try_emplace(time.stage);
     if (is_new) time_stages_.emplace_back(time.stage);
@@ -182,14 +231,18 @@ std::string ReportSeries::json(const std::vector<std::string>& stage_names) cons
     if (out.back() != '{') out.push_back(',');
     out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + ":";
   };
-  for (const auto& [key, curve] : curves_) {
+  for (const auto& [key, curve] : tick_curves_) {
     name(key);
     curve.append_extremes(out);
+  }
+  for (const auto& [key, curve] : frame_curves_) {
+    name(key);
+    curve.append_extremes(out, frame_gaps_);
   }
   out += "},\"stage_us\":{";
   for (const std::string& stage : time_stages_) {
     name(stage);
-    stage_us_.at(stage).append_means(out);
+    stage_us_.at(stage).append_means(out, frame_gaps_);
   }
   out += "},\"highlight\":[";
   for (const TickRecord& tick : highlight_.ticks()) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -12,16 +13,31 @@
 
 namespace palpate {
 
+/// Stretches of time of which nothing was recorded, in bounded memory: the shortest are forgotten first.
+class Gaps {
+ public:
+  /// Ascending, none within another.
+  void push(double begin, double end);
+  /// Those that a chart over `span` shows, in order.
+  std::vector<std::array<double, 2>> seen_over(double span) const;
+
+ private:
+  static constexpr std::size_t kMost = 2048;  ///< chosen
+  static constexpr double kSeen = 1.0 / 400;  ///< of a chart: some two pixels of a wide screen
+
+  std::vector<std::array<double, 2>> gaps_;
+};
+
 /// A long curve in bounded memory: while it fits every point is kept; then neighbouring points share a bin
 /// that keeps its smallest, largest and mean value, so no peak is lost. x must ascend.
 class Envelope {
  public:
   void push(double x, double y);
 
-  /// JSON `[[x,y],…]`: each bin's smallest and largest point, in the order of x.
-  void append_extremes(std::string& out) const;
-  /// JSON `[[x,mean],…]`.
-  void append_means(std::string& out) const;
+  /// JSON `[[x,y],…]`: each bin's smallest and largest point, in the order of x; null is the y in a gap.
+  void append_extremes(std::string& out, const Gaps& gaps = {}) const;
+  /// JSON `[[x,mean],…]`; likewise.
+  void append_means(std::string& out, const Gaps& gaps = {}) const;
 
  private:
   static constexpr std::size_t kBins = 800;  ///< about a bin a pixel of a wide screen (chosen)
@@ -31,6 +47,7 @@ class Envelope {
     std::uint32_t count = 0;
   };
   void merge_pairs();
+  double span() const;
 
   std::vector<Bin> bins_;
   std::uint32_t bin_size_ = 1;
@@ -96,11 +113,14 @@ class ReportSeries : public RunObserver {
   };
   void add_frame(const FrameFigures& frame, std::map<std::int32_t, StageFigures>& to) const;
 
-  std::map<std::string, Envelope> curves_;    ///< by name: "response_force_x", "cst", "frame_us", …
-  std::vector<std::string> time_stages_;      ///< in the order of a frame
-  std::map<std::string, Envelope> stage_us_;  ///< by the back end's name of the stage
+  std::map<std::string, Envelope> tick_curves_;   ///< by name: "response_force_x", …
+  std::map<std::string, Envelope> frame_curves_;  ///< "cst", "frame_us", …
+  std::vector<std::string> time_stages_;          ///< in the order of a frame
+  std::map<std::string, Envelope> stage_us_;      ///< by the back end's name of the stage
   std::vector<Section> sections_;
   std::map<std::int32_t, StageFigures> figures_;
+  Gaps frame_gaps_;
+  double last_frame_s_ = 0;
   std::deque<FrameFigures> waiting_;  ///< frames whose ticks have not come yet, oldest first
   Highlight highlight_;
   WorkGiven work_;

@@ -1,5 +1,5 @@
 // The report's curves lose no peak, and its stretch lies round the strongest contact.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -185,6 +185,39 @@ TEST(ReportSeries, AFrameBelongsToTheStageOfItsTickWhicheverComesFirst) {
       EXPECT_EQ(figures.frame_us_sum, stage == 1 ? 450 : 1450) << order << ": " << stage;
     }
   }
+}
+
+TEST(ReportSeries, ChartsOfFramesHaveAGapWhereNothingWasRecorded) {
+  const Pose pose;
+  const LatticePose lattice_pose{};
+  Contacts contacts;
+  contacts.times.push_back({"field", 1});
+  const ContactResponse response;
+  ReportSeries series;
+  for (int i = 0; i < 1000; ++i) {
+    if (i >= 300 && i < 500) continue;  // a gap that is seen
+    if (i == 700) continue;             // and one narrower than a chart's line
+    ASSERT_TRUE(
+        series.on_frame({i, pose, lattice_pose, contacts, response, 5, /*after_gap=*/i == 500 || i == 701}));
+    ASSERT_TRUE(series.on_tick(tick_with_force(i, 1)));
+  }
+  const nlohmann::json data = nlohmann::json::parse("{" + series.json({}) + "}");
+  for (const nlohmann::json& curve : {data["curves"]["frame_us"], data["curves"]["cst"],
+                                      data["curves"]["depth"], data["stage_us"]["field"]}) {
+    std::vector<double> gaps;
+    for (const auto& point : curve)
+      if (point[1].is_null()) gaps.push_back(point[0]);
+    EXPECT_THAT(gaps, testing::ElementsAre(testing::DoubleNear(0.3995, 1e-9)));
+  }
+  for (const auto& point : data["curves"]["sent_force_x"]) EXPECT_FALSE(point[1].is_null());
+}
+
+TEST(ReportSeries, RemembersTheLongestOfManyGaps) {
+  Gaps gaps;
+  for (int i = 0; i < 10'000; ++i) gaps.push(i, i + (i % 1000 == 0 ? 0.9 : 0.001));
+  const auto seen = gaps.seen_over(300);
+  ASSERT_EQ(seen.size(), 10u);
+  EXPECT_EQ(seen[3], (std::array<double, 2>{3000, 3000.9}));
 }
 
 RecordedRun run_of(int ticks, double force, const char* summary) {

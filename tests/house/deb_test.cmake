@@ -99,16 +99,16 @@ file(WRITE "${WORK_DIR}/upright.off" "OFF\n3 1 0\n0 0 -1\n0 0 1\n0.1 0.1 1\n3 0 
 file(WRITE "${WORK_DIR}/triangle.json"
   "{\"static\": [{\"mesh\": \"triangle.off\"}], \"tool\": {\"mesh\": \"upright.off\"}}")
 
-# A C program built with what the package brings, and Python, each with the package's library.
+# A C program built with what the package brings, and Python, which finds the package's library itself.
 set(loader "LD_LIBRARY_PATH=${root}/lib/${ARCHITECTURE}")
 must(env "PKG_CONFIG_PATH=${root}/lib/${ARCHITECTURE}/pkgconfig" pkg-config --cflags --libs palpate)
 separate_arguments(flags UNIX_COMMAND "${output}")
 must(${CXX} -x c -std=c11 "${SOURCE_DIR}/docs/examples/c/nearest.c" -o "${WORK_DIR}/nearest" ${flags})
 must(env -i ${loader} "${WORK_DIR}/nearest" "${root}/share/palpate/scenes/contacts.json" 0.3)
-must(env -i ${loader} "PYTHONPATH=${root}/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "
+must(env -i "PYTHONPATH=${root}/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "
 import palpate
 scene = palpate.Scene('${WORK_DIR}/triangle.json')
 assert scene.touches([[0.2, 0.2, 0, 0, 0, 0, 1], [0, 0, 9, 0, 0, 0, 1]]).tolist() == [True, False]
 assert palpate.__file__.startswith('${root}'), palpate.__file__")
-must(env -i ${loader} "PYTHONPATH=${root}/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1
+must(env -i "PYTHONPATH=${root}/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1
   "${root}/bin/palpate-sweep" --help)

@@ -31,6 +31,9 @@ TEST(PathFile, ABadLineIsNamedWithItsValueAndWhatIsAllowed) {
   EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1,1\r\n0.5,0,0,0,0,0,0,1,2\n"), "");
   EXPECT_EQ(path_fault("t,x\n"),
             "p.csv, line 1 is \"t,x\"; it must be \"" + kFree.substr(0, kFree.size() - 1) + "\"");
+  EXPECT_EQ(path_fault("x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n"),
+            "p.csv, line 1 is \"x,y,z,qx,qy,qz,qw\"; it must be \"" + kFree.substr(0, kFree.size() - 1) +
+                "\" (poses without times are for \"query\" and \"path\")");
   EXPECT_EQ(path_fault(kFree), "p.csv has no point");
   EXPECT_EQ(path_fault(kFree + "0,0,0,0,0,0,0,1\n"), "p.csv, line 2 has 8 values; the header has 9");
   EXPECT_EQ(path_fault(kFree + "+0,+0.5,0,0,0,0,0,+1,1\n"), "");

@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+import sysconfig
 import threading
 from typing import Any, Callable, Optional, TypeVar
 
@@ -49,11 +50,13 @@ def _candidates() -> list[str]:
     if os.environ.get('PALPATE_LIBRARY'):  # a file: nothing else will do
         return [os.environ['PALPATE_LIBRARY']]
     here = pathlib.Path(__file__).parent
-    # A wheel has it inside, a build tree in lib beside python, and else the loader knows.
-    return [
-        *(str(place) for place in (here / SONAME, here.parent.parent / 'lib' / SONAME) if place.is_file()),
-        SONAME,
-    ]
+    # A wheel has it inside, a build tree in lib beside python, an installed prefix in lib or its folder for
+    # this architecture, above lib/python3/dist-packages; and else the loader knows.
+    places = [here / SONAME, here.parent.parent / 'lib' / SONAME]
+    if here.parent.name == 'dist-packages':
+        lib = here.parents[2]
+        places += [lib / SONAME, lib / (sysconfig.get_config_var('MULTIARCH') or '') / SONAME]
+    return [*(str(place) for place in places if place.is_file()), SONAME]
 
 
 def _load() -> ctypes.CDLL:
