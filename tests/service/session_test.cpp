@@ -380,6 +380,41 @@ TEST(Session, RunsInRealTimeOnItsThreads) {
   EXPECT_TRUE(device.closed_at_zero);
 }
 
+/// A disk that is slow: its first frame takes as long as 200 queries do.
+class SlowWatcher final : public Watcher {
+ public:
+  Result<void> on_frame(const FrameRecord& frame) override {
+    while (frame_ticks.empty() && asked < 200) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (frame.after_gap) {
+      after_gap.push_back(frame.tick);
+      stop = true;
+    }
+    return Watcher::on_frame(frame);
+  }
+  std::atomic<int> asked{0};
+  std::atomic<bool> stop{false};
+  std::vector<std::int64_t> after_gap;
+};
+
+TEST(Session, TellsWhereFramesAreMissingFromTheRecording) {
+  const LoadedScene scene = half_space_scene();
+  HalfSpace backend;
+  WatchedDevice device(scene);
+  SlowWatcher watcher;
+  backend.on_query = [&](int) {
+    ++watcher.asked;
+    return Result<void>();
+  };
+  const auto summary =
+      run_session(scene, backend, device, {.duration_s = 60, .stop = &watcher.stop}, &watcher);
+  ASSERT_TRUE(summary) << summary.error().sentence;
+  EXPECT_GT(summary->dropped_frames, 0u);
+  ASSERT_FALSE(watcher.after_gap.empty());
+  const auto after = std::find(watcher.frame_ticks.begin(), watcher.frame_ticks.end(), watcher.after_gap[0]);
+  ASSERT_NE(after, watcher.frame_ticks.begin());
+  EXPECT_GT(*after - *std::prev(after), 1);
+}
+
 TEST(Session, RefusesSettingsInOneSentenceBeforeTheDeviceIsTouched) {
   const auto refusal = [](auto change) {
     LoadedScene scene = half_space_scene();
