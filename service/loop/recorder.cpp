@@ -135,7 +135,8 @@ Result<void> Recorder::on_frame(const FrameRecord& frame) {
                        .total_us = frame.total_us,
                        .batch = {},
                        .tick = frame.tick,
-                       .heights = true};
+                       .heights = true,
+                       .pose = &frame.pose};
   append_query_line(line, frame.contacts, frame.response, files_->line);
   return files_->frames.write(files_->line.data(), files_->line.size());
 }

@@ -158,7 +158,7 @@ Result<void> ReportSeries::on_tick(const TickRecord& tick) {
   StageFigures& figures = figures_[tick.stage];
   ++figures.ticks;
   if (const double force = glm::length(tick.response.force);
-      force > figures.force_max_n || figures.force_max_n == 0)
+      figures.frames == 0 && (force > figures.force_max_n || figures.force_max_n == 0))
     figures.pose = tick.pose, figures.at_s = tick.time_s;
   figures.force_max_n = std::max(figures.force_max_n, glm::length(tick.response.force));
   figures.torque_max_nm = std::max(figures.torque_max_nm, glm::length(tick.response.torque));
@@ -200,7 +200,8 @@ Result<void> ReportSeries::on_frame(const FrameRecord& frame) {
       stage.second.push(time_s, 0);
 
   // A frame belongs to the stage of its tick, whose record may still be on its way.
-  waiting_.push_back({time_s, frame.total_us, static_cast<std::size_t>(with_force),
+  waiting_.push_back({time_s, frame.total_us, glm::length(frame.response.wrench.force), frame.pose,
+                      static_cast<std::size_t>(with_force),
                       contacts.cst.size() + contacts.bst.size() + contacts.est.size() + contacts.cmt.size() +
                           contacts.bmt.size() + contacts.imt.size()});
   return {};
@@ -211,6 +212,8 @@ void ReportSeries::add_frame(const FrameFigures& frame, std::map<std::int32_t, S
   auto section = sections_.rbegin();
   while (std::next(section) != sections_.rend() && frame.time_s < section->begin_s) ++section;
   StageFigures& figures = to[section->stage];
+  if (frame.force_n > figures.frame_force_max_n || figures.frame_force_max_n == 0)
+    figures.pose = frame.pose, figures.at_s = frame.time_s, figures.frame_force_max_n = frame.force_n;
   ++figures.frames;
   figures.areas_max = std::max(figures.areas_max, frame.areas);
   figures.triangles_max = std::max(figures.triangles_max, frame.triangles);

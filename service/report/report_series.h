@@ -76,8 +76,10 @@ class Highlight {
 struct StageFigures {
   std::int64_t ticks = 0, frames = 0;
   double force_max_n = 0, torque_max_nm = 0;  ///< of the response
-  Pose pose;                                  ///< at the largest force; without any at its last tick
+  /// The tool's at the largest force, without any at its last frame; without frames the device's of ticks.
+  Pose pose;
   double at_s = 0;
+  double frame_force_max_n = 0;  ///< of frames
   std::size_t areas_max = 0, triangles_max = 0;
   double frame_us_sum = 0, frame_us_max = 0;
 };
@@ -108,7 +110,8 @@ class ReportSeries : public RunObserver {
     double begin_s, end_s;
   };
   struct FrameFigures {
-    double time_s, total_us;
+    double time_s, total_us, force_n;
+    Pose pose;
     std::size_t areas, triangles;
   };
   void add_frame(const FrameFigures& frame, std::map<std::int32_t, StageFigures>& to) const;

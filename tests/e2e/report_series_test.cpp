@@ -220,6 +220,35 @@ TEST(ReportSeries, RemembersTheLongestOfManyGaps) {
   EXPECT_EQ(seen[3], (std::array<double, 2>{3000, 3000.9}));
 }
 
+TEST(ReportSeries, AStageIsShownWhereTheToolIsPushedHardest) {
+  const LatticePose lattice_pose{};
+  const Contacts contacts;
+  ReportSeries series;
+  for (int i = 0; i < 100; ++i) {
+    // The device is further in than the tool, which hangs on it.
+    TickRecord tick = tick_with_force(i, i == 60 ? 7 : 1);
+    tick.stage = 1;
+    tick.pose.position.z = -0.01;
+    ContactResponse response;
+    response.wrench.force.z = i == 40 ? 5 : 1;
+    Pose pose;
+    pose.position.z = -0.0001 * i;
+    ASSERT_TRUE(series.on_frame({i, pose, lattice_pose, contacts, response, 5}));
+    ASSERT_TRUE(series.on_tick(tick));
+  }
+  const StageFigures stage = series.stages().at(1);
+  EXPECT_EQ(stage.pose.position.z, -0.004);
+  EXPECT_EQ(stage.at_s, 0.04);
+  ReportSeries without;  // frames, none of which was recorded
+  for (int i = 0; i < 100; ++i) {
+    TickRecord tick = tick_with_force(i, i == 60 ? 7 : 1);
+    tick.stage = 1;
+    tick.pose.position.z = -0.01 * i;
+    ASSERT_TRUE(without.on_tick(tick));
+  }
+  EXPECT_EQ(without.stages().at(1).pose.position.z, -0.6);
+}
+
 RecordedRun run_of(int ticks, double force, const char* summary) {
   RecordedRun run{.folder = "run", .summary = summary, .ticks = {}};
   for (int i = 0; i < ticks; ++i) {

@@ -48,6 +48,30 @@ def test_the_same_run_twice_leaves_the_same_bytes():
     expect(any(frame['areas'] for frame in frames(folder / 'out')), 'three seconds reach the first contact')
 
 
+def test_a_recorded_frame_asked_again_has_the_same_sets_and_areas():
+    folder = Folder()
+    small_run(folder, '--duration', '3', '--backend', 'cpu')
+    recorded = [frame for frame in frames(folder / 'out') if frame['contact']]
+    expect(len(recorded) > 50, f'three seconds reach the first contact: {len(recorded)}')
+    rows = [','.join(map(repr, frame['pose'])) for frame in recorded]
+    poses = folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n' + '\n'.join(rows) + '\n')
+    done = palpate('query', folder / 'scene/scene.json', '--poses', poses, '--backend', 'cpu')
+    asked = [json.loads(line) for line in done.out.splitlines()]
+    expect(len(asked) == len(recorded), done)
+    for frame, again in zip(recorded, asked):
+        for key in ('pose', 'pairs', 'cst', 'bst', 'cmt', 'bmt', 'imt', 'est'):
+            expect(frame[key] == again[key], f'{key} of the frame of tick {frame["tick"]}')
+        same = lambda line: [(area['id'], area['normal'], area['depth']) for area in line['areas']]
+        expect(same(frame) == same(again), f'areas of the frame of tick {frame["tick"]}')
+    # What hangs on a spring is elsewhere than what it hangs on.
+    trace = [line.split(',') for line in (folder / 'out/trace.csv').read_text().splitlines()[1:]]
+    apart = [
+        sum((a - float(b)) ** 2 for a, b in zip(frame['pose'][:3], trace[frame['tick']][1:4])) ** 0.5
+        for frame in recorded
+    ]
+    expect(max(apart) > 1e-5, f'tool and device are at most {max(apart)} m apart')
+
+
 def test_a_recorded_run_is_done_again_to_the_bit():
     folder = Folder()
     small_run(folder, '--duration', '0.3', '--backend', 'cpu')

@@ -1,7 +1,7 @@
 // A session's telemetry: the newest message is kept, frames are kept until the next one.
 import type {Api} from './server/api.js';
 import type {Moment} from './moment.js';
-import {depth, type Bye, type Frame, type StreamHello, type Telemetry} from './server/protocol.js';
+import {depth, type Bye, type Frame, type Pose, type StreamHello, type Telemetry} from './server/protocol.js';
 
 export class LiveSource {
   hello: StreamHello|null = null;
@@ -9,6 +9,7 @@ export class LiveSource {
   missed_ticks = 0;
   private newest: Telemetry|null = null;
   private frame: Frame|null = null;
+  private tool: Pose|null = null;  // which contact holds back where the device is further
   private readonly socket: WebSocket;
   private closed = false;
 
@@ -26,6 +27,7 @@ export class LiveSource {
       else {
         this.newest = message;
         this.frame = message.frame ?? this.frame;
+        this.tool = message.frame_pose ?? this.tool;
         this.dropped = message.dropped;
         this.missed_ticks = message.missed_ticks;
         took(this.moment()!);
@@ -40,7 +42,7 @@ export class LiveSource {
     if (!now) return null;
     return {
       time: now.time_s,
-      pose: now.pose,
+      pose: this.tool ?? now.pose,
       frame: this.frame,
       force: now.force,
       torque: now.torque,

@@ -106,7 +106,7 @@ export class Player {
     const frame = playback.frame(this.changed);
     return {
       time: playback.time,
-      pose: playback.trace.pose(row),
+      pose: frame?.pose ?? playback.trace.pose(row),
       frame,
       force: playback.trace.force(row),
       torque: playback.trace.torque(row),

@@ -149,6 +149,7 @@ export interface Area {
 /** A line of frames.jsonl. */
 export interface Frame extends Record<Kind, number[]> {
   tick: number;
+  pose?: Pose;
   contact: boolean;
   pairs: number;
   areas: Area[];
