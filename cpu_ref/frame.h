@@ -18,7 +18,7 @@ struct Prepared {
   Profile profile = Profile::kRefined;
   Partition mockup;
   Partition tool;               ///< `refined` only
-  bool tool_has_inside = true;  ///< closed, or its partition has a V_int voxel
+  bool tool_has_inside = true;  ///< closed, or OpenBody::has_inside()
   BoxTree mockup_tree;          ///< boxes of the mock-up's triangles
   BoxTree tool_rest_tree;       ///< `refined`: boxes of the tool's triangles in its own frame
 

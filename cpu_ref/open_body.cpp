@@ -70,6 +70,33 @@ int OpenBody::shells_at(const Int3& point) {
   return shells(voxel) + crossed(point, partition_.centre(voxel));
 }
 
+bool OpenBody::has_inside() {
+  if (partition_.has_internal) return true;
+  const auto bounds = [&](std::uint32_t t) { return !mesh_.collapsed(t) && !is_sheet(mesh_, t); };
+  std::uint32_t face = 0;
+  while (face < mesh_.triangles.size() && !bounds(face)) ++face;
+  if (face == mesh_.triangles.size()) return false;
+  std::size_t inside = 0, in_doubt = 0;
+  for (const std::uint64_t number : partition_.boundary_voxels) {
+    const Int3 voxel = partition_.voxel(number);
+    if (shells(voxel) > 0) ++inside;
+    if (is_doubted(voxel)) ++in_doubt;
+  }
+  const std::size_t all = partition_.boundary_voxels.size();
+  return 8 * inside >= all || 16 * in_doubt <= all;
+}
+
+/// Whether a neighbour and a voxel say different things of one of the two.
+bool OpenBody::is_doubted(const Int3& voxel) {
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const Int3 to(x, y, z);
+        if (to != Int3(0) && (says_less(voxel + to, voxel) || says_less(voxel, voxel + to))) return true;
+      }
+  return false;
+}
+
 bool OpenBody::inside(const Int3& point) { return shells_at(point) > 0; }
 
 /// What lies between the middles of two neighbours, the first of a smaller number: along x, then y, then z.

@@ -18,6 +18,9 @@ class OpenBody {
       : mesh_(mesh), tree_(tree), partition_(partition) {}
 
   bool inside(const Int3& point);
+  /// Whether anything can be: of a body that bounds nothing no point counts as inside (section 4, "Tool
+  /// without inside").
+  bool has_inside();
   /// What is left of the weight of a sample that lies inside.
   std::uint32_t sure(std::uint32_t weight, const Int3& point);
   std::uint64_t memory_bytes() const;
@@ -28,6 +31,7 @@ class OpenBody {
   int shells(const Int3& voxel);
   int crossed(const Int3& from, const Int3& to) const;
   int way(Int3 from, const Int3& to);
+  bool is_doubted(const Int3& voxel);
   bool says_less(const Int3& voxel, const Int3& than);
 
   const LatticeMesh& mesh_;

@@ -172,7 +172,6 @@ class RefBackend final : public CollisionBackend {
         auto tool = make_partition(geometry.tool, geometry.tool_grid, kToolGrow, progress);
         if (!tool) return tool.error();
         scene->tool = std::move(*tool);
-        scene->tool_has_inside = geometry.tool.closed || scene->tool.has_internal;
       }
       std::vector<Box> boxes;
       for (std::uint32_t s = 0; s < geometry.mockup.triangles.size(); ++s)
@@ -183,6 +182,8 @@ class RefBackend final : public CollisionBackend {
         for (std::uint32_t m = 0; m < geometry.tool.triangles.size(); ++m)
           boxes.push_back(geometry.tool.collapsed(m) ? Box() : triangle_of(geometry.tool, m).box());
         scene->tool_rest_tree.build(std::move(boxes));
+        scene->tool_has_inside =
+            geometry.tool.closed || OpenBody(geometry.tool, scene->tool_rest_tree, scene->tool).has_inside();
       }
       drop_askers();
       scene_ = std::move(scene);

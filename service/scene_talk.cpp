@@ -145,10 +145,12 @@ Result<SceneTalk> scene_talk(const LoadedScene& scene, CollisionBackend& backend
   if (!geometry.mockup.closed)
     out.bodies.push_back(
         "the mock-up is not closed" +
-        std::string(backend.has_internal_voxels()
-                        ? ""
-                        : ", and no voxel of it is wholly inside, so that it hardly pushes the tool's own "
-                          "surface out (\"sheet_thickness\": \"auto\" in the scene gives it walls)") +
+        std::string(
+            backend.has_internal_voxels()
+                ? ""
+                : ", and no voxel of it is wholly inside, so that where it is a mere surface it hardly "
+                  "pushes the tool's own out (\"sheet_thickness\": \"auto\" in the scene gives it "
+                  "walls)") +
         ": " + vote +
         doubt(geometry.tool, {&contacts.cmt, &contacts.imt}, geometry.mockup, to_world, "tool"));
   if (!geometry.tool.closed && !pose->beyond_lattice)

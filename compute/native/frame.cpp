@@ -41,7 +41,7 @@ Frame::Frame(const SceneGeometry& geometry, const SceneTables& scene, const Plan
       posed_(geometry.tool),
       broad_phase_(BroadPhase::make(geometry, scene, runs_)),
       contact_(NarrowPhase::make(geometry, scene, order_, open)),
-      flags_(scene.constants.tool.closed == 0 && scene.constants.tool.has_internal == 0 ? kFlagToolOpen : 0u),
+      flags_(scene.constants.tool_has_inside == 0 ? kFlagToolOpen : 0u),
       touch_(kUsualItems),
       candidate_pairs_(kUsualItems),
       swallowed_(kUsualItems),

@@ -5,24 +5,22 @@
 namespace palpate {
 namespace {
 
-gpu::BodyConstants constants_of(const LatticeMesh& mesh, const PreparedGrid& prepared) {
+gpu::BodyConstants constants_of(const LatticeMesh& mesh, const gpu::GridConstants& grid) {
   gpu::BodyConstants out{};
   out.vertices = static_cast<std::uint32_t>(mesh.vertices.size());
   out.triangles = static_cast<std::uint32_t>(mesh.triangles.size());
   out.closed = mesh.closed ? 1 : 0;
-  out.has_internal = prepared.has_internal ? 1 : 0;
-  out.grid = prepared.grid;
+  out.grid = grid;
   return out;
 }
 
 }  // namespace
 
 gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& plan,
-                                    const PreparedGrid& mockup, const PreparedGrid& tool,
-                                    const gpu::GridConstants& fine) {
+                                    const PreparedGrids& prepared) {
   gpu::SceneConstants out{};
-  out.mockup = constants_of(geometry.mockup, mockup);
-  out.tool = constants_of(geometry.tool, tool);
+  out.mockup = constants_of(geometry.mockup, prepared.mockup);
+  out.tool = constants_of(geometry.tool, prepared.tool);
   out.tool_radius = geometry.tool_radius;
   out.lever_shift = lever_shift(geometry.tool_radius);
   out.refined = plan.profile == Profile::kRefined ? 1 : 0;
@@ -32,7 +30,8 @@ gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& p
   }
   out.sample_spacing = geometry.sample_spacing;
   out.contact_samples = geometry.contact_samples;
-  out.fine = fine;
+  out.tool_has_inside = prepared.tool_has_inside ? 1 : 0;
+  out.fine = prepared.fine;
   return out;
 }
 

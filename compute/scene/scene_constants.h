@@ -5,15 +5,15 @@
 
 namespace palpate {
 
-/// What the making of a partition has found. All 0 where there is none.
-struct PreparedGrid {
-  gpu::GridConstants grid{};
-  bool has_internal = false;
+/// What the making of partitions has found. Grids are all 0 where there is none.
+struct PreparedGrids {
+  gpu::GridConstants mockup{}, tool{};
+  gpu::GridConstants fine{};  ///< the tool's finer one, or its own
+  bool tool_has_inside = false;
 };
 
-/// Numbers of a prepared scene. `fine`: the tool's finer partition, or its own.
+/// Numbers of a prepared scene.
 gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& plan,
-                                    const PreparedGrid& mockup, const PreparedGrid& tool,
-                                    const gpu::GridConstants& fine);
+                                    const PreparedGrids& prepared);
 
 }  // namespace palpate

@@ -17,12 +17,14 @@ inline constexpr std::int32_t kVoxelParts =
 /// A partition that lies somewhere on the host: as Partition.
 struct PartitionView {
   gpu::GridConstants grid{};
+  bool has_internal = false;
   std::span<const std::uint32_t> brick_slot, mixed_brick, boundary_place, list_begin, list_triangles;
   std::span<const gpu::Brick> bricks;
 
   PartitionView() = default;
   PartitionView(const Partition& p)  // NOLINT: a partition is a view of itself
       : grid(p.grid),
+        has_internal(p.has_internal),
         brick_slot(p.brick_slot),
         mixed_brick(p.mixed_brick),
         boundary_place(p.boundary_place),

@@ -1,8 +1,11 @@
 #include "model/generate/solids.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -199,6 +202,47 @@ void append(Mesh& into, const Mesh& part, const std::string& name) {
 Mesh moved(Mesh mesh, const Pose& pose) {
   for (Vec3& v : mesh.vertices) v = pose.rotation * v + pose.position;
   return mesh;
+}
+
+Mesh split(const Mesh& mesh, double share) {
+  const std::size_t count = mesh.triangles.size();
+  const auto corner = [&](std::size_t t, std::size_t k) { return mesh.vertices[mesh.triangles[t][k % 3]]; };
+  std::vector<std::size_t> face(count);
+  std::iota(face.begin(), face.end(), std::size_t{0});
+  const auto face_of = [&](std::size_t t) {
+    while (face[t] != t) t = face[t] = face[face[t]];
+    return t;
+  };
+  // Joined over edges, by their ends' bits, that are no sharper than 45°.
+  std::vector<Vec3> normals(count);
+  std::map<std::array<double, 6>, std::size_t> seen;
+  for (std::size_t t = 0; t < count; ++t) {
+    normals[t] = glm::normalize(glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = corner(t, k), b = corner(t, k + 1);
+      if (const auto there = seen.find({b.x, b.y, b.z, a.x, a.y, a.z}); there == seen.end())
+        seen.insert({{a.x, a.y, a.z, b.x, b.y, b.z}, t});
+      else if (glm::dot(normals[t], normals[there->second]) > std::sqrt(0.5))
+        face[face_of(t)] = face_of(there->second);
+    }
+  }
+  std::vector<Vec3> middle(count, Vec3(0));
+  std::vector<double> corners(count, 0);
+  for (std::size_t t = 0; t < count; ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle[face_of(t)] += corner(t, k);
+      corners[face_of(t)] += 1;
+    }
+  Mesh out;
+  out.parts = mesh.parts;
+  for (std::size_t t = 0; t < count; ++t) {
+    const std::size_t of = face_of(t);
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (std::size_t k = 0; k < 3; ++k)
+      out.vertices.push_back(corner(t, k) + share * (middle[of] / corners[of] - corner(t, k)));
+    out.triangles.push_back({first, first + 1, first + 2});
+  }
+  return out;
 }
 
 Mesh turned_inside_out(Mesh mesh) {

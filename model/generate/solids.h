@@ -61,6 +61,10 @@ void append(Mesh& into, const Mesh& part, const std::string& name);
 /// Every vertex moved: rotation · v + position.
 Mesh moved(Mesh mesh, const Pose& pose);
 
+/// Every face (triangles joined over edges no sharper than 45°) with corners of its own, moved towards its
+/// middle by a `share` of the way: faces that do not meet, as CAD programs write them. No longer closed.
+Mesh split(const Mesh& mesh, double share);
+
 /// The same shell inside out.
 Mesh turned_inside_out(Mesh mesh);
 

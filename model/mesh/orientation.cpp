@@ -146,4 +146,10 @@ Orientation orient(const EdgeTable& edges, std::span<const std::uint32_t> part_o
   return out;
 }
 
+bool has_faces(const LatticeMesh& mesh) {
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!mesh.collapsed(t) && (mesh.flags[t] & kTriangleSheet) == 0) return true;
+  return false;
+}
+
 }  // namespace palpate

@@ -37,6 +37,9 @@ Orientation orient(const EdgeTable& edges, std::span<const std::uint32_t> part_o
 /// Triangles of a shell that vote on its side (chosen).
 inline constexpr std::uint32_t kOrientationRays = 64;
 
+/// Whether a triangle that has not collapsed is no sheet's: what is made of sheets alone bounds no inside.
+bool has_faces(const LatticeMesh& mesh);
+
 /// Windings on the two sides of a triangle, just off its centroid, the triangle itself and those coplanar
 /// with it there left out: the crossings' signs summed along its normal's dominant axis, away from the
 /// triangle on either side.

@@ -2,6 +2,8 @@
 // they see its middle, along the axes from middle to middle, and keeps which say less of it than itself, and
 // of which it says less: bit x + 3 y + 9 z of 27, 13 its own.
 // Before: shell_sweep along all axes; what half voxels are crossed by along each. Writes behind all shells.
+// Counts the voxels whose middle is in one, and those that see a neighbour otherwise than it does itself, or
+// are seen so.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/cells.glsl"
@@ -17,6 +19,7 @@ layout(scalar, set = 0, binding = 4) readonly buffer HalvesX { int32_t halves_x[
 layout(scalar, set = 0, binding = 5) readonly buffer HalvesY { int32_t halves_y[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer HalvesZ { int32_t halves_z[]; };
 layout(scalar, set = 0, binding = 7) buffer Shells { int32_t shells[]; };
+layout(scalar, set = 0, binding = 8) buffer Counts { uint32_t in_a_shell, in_doubt; };
 layout(push_constant, scalar) uniform Push { GridPush push; };
 
 const uint32_t kOwn = 13u;
@@ -53,6 +56,7 @@ int32_t half_of(uint32_t place, uint32_t axis, uint32_t beyond) {
 void main() {
   const uint32_t voxel = item_index();
   if (voxel >= push.count) return;
+  if (shells[voxel] > 0) atomicAdd(in_a_shell, 1u);
   const uint32_t place = boundary_place[voxel];
   const ivec3 home = cell_of_number(mixed_brick[place >> 9], push.bricks) * 8 +
                      ivec3(int32_t(place & 7u), int32_t(place >> 3 & 7u), int32_t(place >> 6 & 7u));
@@ -79,6 +83,7 @@ void main() {
     less |= uint32_t(seen < 0) << i;
     more |= uint32_t(seen > 0) << i;
   }
+  if ((less | more) != 0u) atomicAdd(in_doubt, 1u);
   shells[push.count + 2u * voxel] = int32_t(less);
   shells[push.count + 2u * voxel + 1u] = int32_t(more);
 }

@@ -68,27 +68,27 @@ PALPATE_CONSTANT uint32_t kTreeRecordTexels = 3u;
 struct BodyConstants {
   uint32_t vertices;
   uint32_t triangles;
-  uint32_t closed;        // 1: every edge's signed incidence is 0
-  uint32_t has_internal;  // 1: the partition has V_int voxels
-  GridConstants grid;     // all 0 when there is no partition (the tool's in `paper`)
+  uint32_t closed;     // 1: every edge's signed incidence is 0
+  GridConstants grid;  // all 0 when there is no partition (the tool's in `paper`)
 };
-PALPATE_ASSERT_SIZE(BodyConstants, 56);
+PALPATE_ASSERT_SIZE(BodyConstants, 52);
 
 // Binding `scene` of every shader of a frame.
 struct SceneConstants {
   BodyConstants mockup;
   BodyConstants tool;
-  int32_t tool_radius;     // steps
-  int32_t lever_shift;     // of it (model/contact/field.h)
-  int32_t sample_spacing;  // steps, of both bodies
-  uint32_t refined;        // 1: profile `refined`, 0: `paper`
-  uint32_t mockup_extras;  // extra samples; refined
+  int32_t tool_radius;       // steps
+  int32_t lever_shift;       // of it (model/contact/field.h)
+  int32_t sample_spacing;    // steps, of both bodies
+  uint32_t refined;          // 1: profile `refined`, 0: `paper`
+  uint32_t tool_has_inside;  // 1: a point can lie in it (docs/EXACTNESS.md section 4, "Tool without inside")
+  uint32_t mockup_extras;    // extra samples; refined
   uint32_t tool_extras;
   uint32_t contact_samples;  // of a body, that say what a contact pushes with; 0: all
   GridConstants fine;  // a second, finer partition of a closed tool, or its own: early answers for samples
 };
-PALPATE_ASSERT_SIZE(SceneConstants, 180);
-PALPATE_ASSERT_OFFSET(SceneConstants, tool_radius, 112);
+PALPATE_ASSERT_SIZE(SceneConstants, 176);
+PALPATE_ASSERT_OFFSET(SceneConstants, tool_radius, 104);
 
 PALPATE_SHARED_END
 #endif

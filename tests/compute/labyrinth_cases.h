@@ -381,7 +381,7 @@ inline std::vector<ModuleRun> doubts() {
     for (std::uint32_t i = 0; i < l.boundary_voxels; ++i) shells[i] = static_cast<std::int32_t>(random() % 3);
     runs.push_back({"shell_doubt",
                     {l.slot, l.mixed, words_of(l.bricks), place, words_of(halves[0]), words_of(halves[1]),
-                     words_of(halves[2]), words_of(shells)},
+                     words_of(halves[2]), words_of(shells), Words{5, 7}},
                     push_of(grid_of(l, l.boundary_voxels)),
                     l.boundary_voxels + kMore});
   }

@@ -332,9 +332,12 @@ TEST_F(LabyrinthModules, NeighboursSayLessOrMore) {
     for (std::size_t v = 0; v < voxels; ++v) {
       shells[voxels + 2 * v] = static_cast<std::int32_t>(less[v]);
       shells[voxels + 2 * v + 1] = static_cast<std::int32_t>(more[v]);
+      want[8][1] += (less[v] | more[v]) != 0 ? 1u : 0u;
       bits += static_cast<std::size_t>(std::popcount(less[v]) + std::popcount(more[v]));
     }
     want[7] = words_of(shells);
+    want[8][0] += static_cast<std::uint32_t>(std::count_if(
+        shells.begin(), shells.begin() + static_cast<std::ptrdiff_t>(voxels), [](int s) { return s > 0; }));
   });
   EXPECT_GT(bits, 10'000u);
 }

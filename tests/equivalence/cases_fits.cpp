@@ -1,5 +1,6 @@
 // Parts in their place: pegs, press fits, keys, rings and plates, a little off and a little tilted, where the
 // field cancels in all but the last bits.
+#include <algorithm>
 #include <cmath>
 
 #include "model/generate/solids.h"
@@ -261,6 +262,31 @@ std::vector<Case> fit_cases() {
           "nearly_closed_ball_on_a_plates_edge", "extra samples about a tool whose inside is voted",
           [thin_plate] { return thin_plate; }, [] { return nearly_closed(solids::sphere(6 * kMm, 24, 12)); },
           {.place = {11, 0, 0}, .along = 2, .turn = 0.5}),
+      fit(
+          "thin_split_tool", "no voxel of the tool is wholly inside, and its faces do not meet",
+          [] {
+            return block({-12, -12, -10}, {12, 12, 0});
+          },
+          [thin_plate] { return solids::split(thin_plate, 1e-3); }, {.along = 0.4, .turn = 0.05}),
+      fit(
+          "split_sleeve_on_a_shaft", "the same round a shaft",
+          [] { return solids::cylinder(8 * kMm, 30 * kMm, 24); },
+          [] { return solids::split(solids::ring(8.1 * kMm, 8.9 * kMm, 12 * kMm, 24), 1e-3); },
+          {.place = {0, 0, 8}, .along = 0.5, .turn = 0.05}),
+      fit(
+          "box_without_lid_round_a_block", "a tool that bounds nothing pushes as a sheet does",
+          [] {
+            return block({-6, -6, -6}, {6, 6, 6});
+          },
+          [] {
+            Mesh open = block({-6.2, -6.2, -6.2}, {6.2, 6.2, 12});
+            std::erase_if(open.triangles, [&](const auto& t) {
+              return std::ranges::all_of(t, [&](std::uint32_t v) { return open.vertices[v].z > 11 * kMm; });
+            });
+            open.parts = {{"open", 0, static_cast<std::uint32_t>(open.triangles.size())}};
+            return open;
+          },
+          {.along = 0.6, .turn = 0.02}),
       fit(
           "block_in_doubted_balls", "weights ramp down where voxels of the mock-up doubt that it is inside",
           [] { return doubted_balls(12); },

@@ -22,8 +22,7 @@ std::unique_ptr<FrameDetection> FrameDetection::make(const SceneGeometry& geomet
   out->plan_ = plan;
   out->order_ = order_in_space(geometry.tool);
   out->refined_ = scene.constants.refined != 0;
-  out->inside_ =
-      out->refined_ && (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
+  out->inside_ = out->refined_ && scene.constants.tool_has_inside != 0;
   out->closed_ = out->refined_ && scene.constants.tool.closed != 0;
   out->listed_ = static_cast<bool>(scene.sample_points);
   out->wide_ = scene.constants.mockup.grid.size > kNarrowVoxel;

@@ -53,7 +53,7 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   out.geometry_ = &geometry;
   out.plan_ = plan;
   const BodyConstants &mockup = scene.constants.mockup, &tool = scene.constants.tool;
-  out.inside_ = tool.closed != 0 || tool.has_internal != 0;
+  out.inside_ = scene.constants.tool_has_inside != 0;
   const std::uint32_t inside = out.inside_ ? 1 : 0, listed = scene.tool_sample_points ? 1 : 0;
   const auto has_sheets = [](const LatticeMesh& mesh) {
     return std::ranges::any_of(mesh.flags, [](std::uint8_t flags) { return (flags & kTriangleSheet) != 0; });

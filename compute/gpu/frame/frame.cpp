@@ -92,7 +92,7 @@ Result<void> RecordedFrame::make(const std::map<std::string, std::uint32_t>& fir
   detection_ = FrameDetection::make(geometry_, scene_, plan_);
   if (auto r = make_pipelines(); !r) return r;
   std::optional<std::uint64_t> samples;
-  if (scene_.sample_ids && (constants.tool.closed != 0 || constants.tool.has_internal != 0))
+  if (scene_.sample_ids && constants.tool_has_inside != 0)
     samples = scene_.sample_ids.bytes() / sizeof(std::uint32_t);
   const WorkCut cut = work_cut(device_, false);
   capacity_ = FrameCapacity::first({.scene = constants, .cut = cut, .samples = samples}, first_capacity);

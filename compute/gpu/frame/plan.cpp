@@ -58,9 +58,7 @@ void add_constants(const WorkCut& cut, std::vector<SpecConstant>& to) {
 }
 
 std::uint32_t flags_of_frames(const gpu::SceneConstants& scene) {
-  return scene.refined != 0 && scene.tool.closed == 0 && scene.tool.has_internal == 0
-             ? std::uint32_t{kFlagToolOpen}
-             : 0u;
+  return scene.refined != 0 && scene.tool_has_inside == 0 ? std::uint32_t{kFlagToolOpen} : 0u;
 }
 
 gpu::FrameInput frame_input(const LatticePose& pose) {

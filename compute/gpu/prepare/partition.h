@@ -37,7 +37,8 @@ std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, c
 /// Classes of all voxels that are not boundary: components, votes, V_ext and V_int.
 void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pairs, BodyBuffers& body);
 
-/// Fills `body.partition.shells` of a body that is not closed. After classify().
-void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body);
+/// Fills `body.partition.shells` of a body that is not closed. After classify(). Whether it bounds an
+/// inside, if it has a face (EXACTNESS.md section 4, "Tool without inside").
+bool count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body);
 
 }  // namespace palpate

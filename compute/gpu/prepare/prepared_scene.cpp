@@ -13,6 +13,7 @@
 #include "compute/gpu/prepare/search_tables.h"
 #include "compute/gpu/prepare/steps.h"
 #include "compute/scene/scene_constants.h"
+#include "model/mesh/orientation.h"
 #include "shaders/shared/frame_field.h"
 
 namespace palpate {
@@ -153,24 +154,31 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   const VoxelPairs pairs =
       build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
+  bool tool_has_inside = false;
   if (refined && !geometry.mockup.closed) count_shells(steps, pairs, out.mockup);
   make_search_tables(steps, geometry, refined, out);
   if (refined) {
     const VoxelPairs tool_pairs =
         build_lists(steps, geometry.tool, geometry.tool_grid, gpu::kToolVoxelGrowth, "tool", out.tool);
     classify(steps, geometry.tool, tool_pairs, out.tool);
-    if (!geometry.tool.closed && out.tool.partition.has_internal) count_shells(steps, tool_pairs, out.tool);
+    tool_has_inside = geometry.tool.closed;
+    if (!geometry.tool.closed && has_faces(geometry.tool)) {
+      tool_has_inside = count_shells(steps, tool_pairs, out.tool) || out.tool.partition.has_internal;
+      if (!tool_has_inside) out.tool.partition.shells = {};
+    }
     steps.progress("samples", 0.95);
     refine_tool(steps, geometry, out);
     list_tool_samples(steps, geometry, out);
-    if (geometry.tool.closed || out.tool.partition.has_internal) list_samples(steps, geometry, pairs, out);
+    if (tool_has_inside) list_samples(steps, geometry, pairs, out);
   } else {
     make_empty(steps, out.tool.partition);
   }
 
-  const auto grid_of = [](const PartitionBuffers& p) { return PreparedGrid{p.grid, p.has_internal}; };
-  out.constants = scene_constants(geometry, plan, grid_of(out.mockup.partition), grid_of(out.tool.partition),
-                                  out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid);
+  out.constants = scene_constants(geometry, plan,
+                                  {.mockup = out.mockup.partition.grid,
+                                   .tool = out.tool.partition.grid,
+                                   .fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid,
+                                   .tool_has_inside = tool_has_inside});
   out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
   steps.progress("prepared", 1);
   if (!steps.ok()) return steps.error();

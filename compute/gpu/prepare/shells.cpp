@@ -11,14 +11,18 @@
 
 namespace palpate {
 
-void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body) {
+constexpr std::uint64_t kVoxelsAnInside = 8;  // of them one at least is in a shell, …
+constexpr std::uint64_t kVoxelsADoubt = 16;   // … or one at most in doubt, of what bounds an inside
+
+bool count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body) {
   PartitionBuffers& p = body.partition;
   const std::uint64_t voxels = p.grid.boundary_voxels;
   std::array<VulkanBuffer, 3> halves_along;
   for (VulkanBuffer& halves : halves_along) halves = steps.buffer("crossings of half voxels", voxels, 8);
   const VulkanBuffer link = steps.buffer("rows of bricks", p.grid.mixed_bricks);
   p.shells = steps.buffer("shells of voxels", voxels, 12);
-  if (!steps.ok()) return;
+  const VulkanBuffer counts = steps.buffer("voxels inside and in doubt", 2);
+  if (!steps.ok()) return false;
   steps.fill(p.shells, INT32_MAX);
   gpu::GridPush push;
   push.origin = p.grid.origin;
@@ -29,7 +33,7 @@ void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& bod
     const std::uint64_t rows =
         static_cast<std::uint64_t>(p.grid.bricks[u]) * static_cast<std::uint64_t>(p.grid.bricks[v]);
     const VulkanBuffer head = steps.buffer("rows of bricks", rows);
-    if (!steps.ok()) return;
+    if (!steps.ok()) return false;
     const VulkanBuffer& halves = halves_along[axis];
     push.axis = axis;
     push.count = pairs.count;
@@ -50,8 +54,12 @@ void count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& bod
   }
   push.count = static_cast<std::uint32_t>(voxels);
   const auto& [x, y, z] = halves_along;
+  steps.fill(counts, 0);
   steps.run_items(spirv::shell_doubt, {},
-                  {p.brick_slot, p.mixed_brick, p.bricks, p.boundary_place, x, y, z, p.shells}, push, voxels);
+                  {p.brick_slot, p.mixed_brick, p.bricks, p.boundary_place, x, y, z, p.shells, counts}, push,
+                  voxels);
+  const std::uint64_t inside = steps.read(counts, 0), doubted = steps.read(counts, 1);
+  return kVoxelsAnInside * inside >= voxels || kVoxelsADoubt * doubted <= voxels;
 }
 
 }  // namespace palpate

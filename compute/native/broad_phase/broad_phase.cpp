@@ -67,8 +67,7 @@ BroadPhase BroadPhase::make(const SceneGeometry& geometry, const SceneTables& sc
   BroadPhase out;
   out.tree_ = &runs;
   out.order_ = runs.order();
-  out.has_inside_ = scene.constants.refined != 0 &&
-                    (scene.constants.tool.closed != 0 || scene.constants.tool.has_internal != 0);
+  out.has_inside_ = scene.constants.refined != 0 && scene.constants.tool_has_inside != 0;
   out.always_samples_ = out.has_inside_ && scene.constants.tool.closed == 0;
   out.pairs_ = CandidatePairs::make(scene);
   out.seen_[0].resize(geometry.mockup.triangles.size());

@@ -27,11 +27,10 @@ std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, co
   out->in_tool_.use(open.tool);
   out->sets_ = ContactSets::make(geometry, scene, order, out->in_tool_);
   out->mobiles_.resize(geometry.tool.triangles.size());
-  const BodyConstants& tool = scene.constants.tool;
   InsideSearch in_mockup(geometry.mockup, out->mockup_, scene.search->boxes);
   in_mockup.use(open.mockup);
   out->field_ = PressureField::make(geometry, scene.search->triangles, in_mockup, out->tool_triangles_,
-                                    out->in_tool_, order, tool.closed != 0 || tool.has_internal != 0);
+                                    out->in_tool_, order, scene.constants.tool_has_inside != 0);
   return out;
 }
 

@@ -9,7 +9,9 @@
 namespace palpate {
 namespace {
 
-constexpr int kNearWalk = 8;                   // voxels (docs/EXACTNESS.md section 4)
+constexpr int kNearWalk = 8;                // voxels (docs/EXACTNESS.md section 4)
+constexpr std::size_t kVoxelsAnInside = 8;  // of them one at least is in a shell, …
+constexpr std::size_t kVoxelsADoubt = 16;  // … or one at most in doubt, of what bounds an inside (section 4)
 constexpr std::uint32_t kVoxelsAShare = 1024;  // chosen
 
 /// Calls take(voxel, boundary) for every V_bnd voxel, on all cores. False: `go_on` said stop.
@@ -124,6 +126,14 @@ struct Neighbours {
 };
 
 }  // namespace
+
+bool OpenShells::bound_an_inside() const {
+  const auto inside = static_cast<std::size_t>(
+      std::ranges::count_if(middle_, [](std::int32_t shells) { return shells > 0; }));
+  const auto doubted = static_cast<std::size_t>(
+      std::ranges::count_if(doubts_, [](const Doubts& of) { return (of.less | of.more) != 0; }));
+  return kVoxelsAnInside * inside >= middle_.size() || kVoxelsADoubt * doubted <= middle_.size();
+}
 
 std::optional<OpenShells> OpenShells::make(const PartitionView& view, const Ask& ask, const GoOn& go_on) {
   const PartitionLookup partition(view);

@@ -8,6 +8,7 @@
 #include "compute/scene/scene_constants.h"
 #include "compute/scene/search_tables.h"
 #include "compute/scene/tool_solid.h"
+#include "model/mesh/orientation.h"
 #include "model/scene/geometry_build.h"
 
 namespace palpate::native {
@@ -116,16 +117,22 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
     out.mockup_shells = OpenInside::count_shells(geometry.mockup, out.mockup, out.search->boxes, go_on);
     if (!out.mockup_shells) return cancelled();
   }
-  if (!geometry.tool.closed && out.tool.has_internal) {
+  bool tool_has_inside = geometry.tool.closed;
+  if (!geometry.tool.closed && has_faces(geometry.tool)) {
     out.tool_shells = OpenInside::count_shells(geometry.tool, out.tool,
                                                SearchTables::boxes_of(geometry.tool, out.tool), go_on);
     if (!out.tool_shells) return cancelled();
+    tool_has_inside = out.tool.has_internal || out.tool_shells->bound_an_inside();
+    if (!tool_has_inside) out.tool_shells = nullptr;
   }
-  if (geometry.tool.closed || out.tool.has_internal)
+  if (tool_has_inside)
     if (!make_samples(geometry, progress, out)) return cancelled();
 
-  out.constants = scene_constants(geometry, plan, {out.mockup.grid, out.mockup.has_internal},
-                                  {out.tool.grid, out.tool.has_internal}, out.finest().grid);
+  out.constants = scene_constants(geometry, plan,
+                                  {.mockup = out.mockup.grid,
+                                   .tool = out.tool.grid,
+                                   .fine = out.finest().grid,
+                                   .tool_has_inside = tool_has_inside});
   out.know(geometry);
   if (!at("prepared", 1)) return cancelled();
   return out;

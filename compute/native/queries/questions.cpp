@@ -45,7 +45,7 @@ std::vector<std::vector<Int3>> parts_of(const LatticeMesh& mesh) {
 Containment::Containment(const SceneGeometry& geometry, const SceneTables& scene)
     : mockup(scene.mockup),
       told_by_corners(geometry.mockup.closed && geometry.tool.closed),
-      mockup_has_inside(scene.constants.mockup.has_internal != 0),
+      mockup_has_inside(scene.mockup.has_internal),
       tool_parts(parts_of(geometry.tool)),
       small_parts(scene.search->parts),
       tool_low(geometry.tool.box_min),
