@@ -8,6 +8,7 @@
 
 #include "model/contact/response.h"
 #include "model/mesh/winding_number.h"
+#include "service/cli/numbers.h"
 
 namespace palpate {
 namespace {
@@ -57,7 +58,7 @@ void tell_start(const LoadedScene& scene, const Contacts& contacts, const Contac
   const std::size_t more = deepest.size() - std::min(deepest.size(), kToldAreas);
   deepest.resize(deepest.size() - more);
   const auto start = [](double depth, const std::string& part) {
-    return fmt::format("the tool starts {:.3g} mm deep in {}", depth * 1000, part);
+    return fmt::format("the tool starts up to {} deep in {}", length_text(depth), part);
   };
   for (const std::size_t i : deepest) {
     const ContactArea& area = contacts.areas[i];
@@ -69,7 +70,7 @@ void tell_start(const LoadedScene& scene, const Contacts& contacts, const Contac
       sentence += ", its part " + part_of(geometry.tool_report, area.mobile_ids.front(), "the tool");
     else if (i == deepest.front() && !geometry.tool_report.parts.empty())
       sentence += ", its part " + tool;
-    out.push_back(sentence + ", at " + place(response.areas[i].point));
+    out.push_back(sentence + ", about " + place(response.areas[i].point));
   }
   if (deepest.empty())
     out.push_back(start(geometry.lattice.step_m * contacts.field.max_depth,

@@ -31,6 +31,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -222,7 +223,17 @@ Result<std::vector<Body>> read_brep(const std::string& path, const std::string& 
                                     const TellHowFar& tell) {
   TopoDS_Shape shape;
   const Handle(StageProgress) progress = new StageProgress(tell, ImportStage::kRead);
-  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder(), progress_of(progress)) || shape.IsNull())
+  const Result<FileView> file = FileView::open(path);
+  if (!file) return file.error();
+  // At a file's end the library looks for what it misses without end; a last number ends with its line.
+  std::istringstream in(std::string(file->bytes()) + '\n');
+  in.exceptions(std::ios::eofbit);
+  try {
+    BRepTools::Read(shape, in, BRep_Builder(), progress_of(progress));
+  } catch (const std::ios_base::failure&) {
+    return bad_value(fmt::format("'{}' is cut short: it ends before its shapes do", path));
+  }
+  if (shape.IsNull())
     return bad_value(fmt::format("'{}' can't be read: it breaks the rules of BREP files", path));
   Colours none;
   Bodies bodies([](const TopoDS_Shape&) { return std::string(); }, none);

@@ -43,12 +43,15 @@ class Triangulator {
     parameters.AngleInterior = parameters.Angle;
     TopTools_DataMapOfShapeShape done;  // instances share their triangles, too
     std::size_t number = 0;
+    double largest = 0;  // deflection, m
     for (const Body& body : bodies) {
       if (tell)
         tell({ImportStage::kTriangles, static_cast<double>(number++) / static_cast<double>(bodies.size())});
       const TopoDS_Shape own = body.shape.Located(TopLoc_Location());
       if (!done.IsBound(own)) {
-        parameters.Deflection = std::min(*deflection, longest_side(own) / kFewestDeflections) / unit_m_;
+        const double used = std::min(*deflection, longest_side(own) / kFewestDeflections);
+        largest = std::max(largest, used);
+        parameters.Deflection = used / unit_m_;
         parameters.DeflectionInterior = parameters.Deflection;
         parameters.MinSize =
             parameters.Deflection / 10;  // edges shorter than that are not divided for the angle's sake
@@ -68,7 +71,7 @@ class Triangulator {
                                          first_flat_, flat_path_));
     report.notes.push_back(fmt::format(
         "{} faces became triangles, to lie within about {:.4g} {} of them, {:.4g}° between neighbours",
-        faces_, *deflection, unit_name_, tessellation.angle_deg));
+        faces_, largest, unit_name_, tessellation.angle_deg));
     return std::move(mesh_);
   }
 

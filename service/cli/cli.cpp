@@ -302,9 +302,12 @@ void add_query_command(CLI::App& app, QueryOptions& query, const Parts& parts, R
       ->needs(geometry);
   auto* any = query_app->add_flag("--any", query.any,
                                   "touch or not alone, containment included: number, engine and touches");
-  auto* clearance = query_app->add_flag("--clearance", query.clearance,
-                                        "the exact smallest distance alone: clearance m (null: beyond the "
-                                        "lattice), static and mobile triangle, their points and parts");
+  auto* clearance =
+      query_app->add_flag("--clearance", query.clearance,
+                          "the smallest distance alone, exact to the lattice step below it: "
+                          "clearance m (null: beyond the lattice; 0 is free by less than a step "
+                          "where touches is false), static and mobile triangle, their points "
+                          "and parts");
   auto* within =
       query_app
           ->add_option_function<double>(

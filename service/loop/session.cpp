@@ -461,8 +461,8 @@ SessionSummary summarise(const Run& run, const LoadedScene& scene, CollisionBack
     note("the haptic device was not ready (unplugged, loading, homing) in " +
          std::to_string(run.tick.unready_ticks()) + " ticks, which had no force");
   if (out.missed_ticks > 0)
-    note(std::to_string(out.missed_ticks) +
-         " ticks were missed: the loop's thread did not get the processor in time");
+    note(std::to_string(out.missed_ticks) + (out.missed_ticks == 1 ? " tick was" : " ticks were") +
+         " missed: the loop's thread did not get the processor in time");
   if (run.frame.truncated_frames() > 0)
     note(std::to_string(run.frame.truncated_frames()) +
          " frames gave no force because a capacity was too small: " + run.frame.truncated_capacity());

@@ -100,7 +100,7 @@ std::string compare_page(const RecordedRun& first, const RecordedRun& second,
       difference.common, difference.only_first, difference.only_second, difference.contact_differs,
       stopped_text(difference).empty() ? "" : "; " + stopped_text(difference));
   body +=
-      "<h2>Tick by tick</h2><div class=\"scroll\"><table "
+      "<h2>Tick by tick, over the ticks in both</h2><div class=\"scroll\"><table "
       "class=\"differences\"><tr><th>quantity</th><th>largest, "
       "first</th><th>largest, "
       "second</th><th>difference</th></tr>";

@@ -61,7 +61,7 @@ std::string pictures(const LoadedScene& scene, const PathMoment& moment, const s
   } else {
     near = section_through(moment.where.value_or(in_world(geometry, pose->translation)), moment.facing,
                            4 * voxel);
-    near.label = moment.depth_m ? length_text(*moment.depth_m) + " deep" : "";
+    near.label = moment.depth_m ? "up to " + length_text(*moment.depth_m) + " deep" : "";
   }
   turn_through_tool(
       geometry, *pose,

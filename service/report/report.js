@@ -34,7 +34,7 @@
   tile(
       number(summary.frame_us.p50 / 1000) + ' ms',
       'a frame, median (p99 ' + number(summary.frame_us.p99 / 1000) + ' ms)');
-  tile(summary.areas_max, 'contact areas at once');
+  tile(summary.areas_max, 'contact areas at once, those without a force, too');
   tile(number(summary.force_max_N) + ' N', 'largest force sent');
   tile(number(summary.torque_max_Nm) + ' N·m', 'largest torque sent');
   if (data.notes.length) {

@@ -97,7 +97,8 @@ def test_info_of_a_scene_says_how_the_tool_starts():
     expect(start_of(0.03, profile='paper')['free'], 'likewise')
     pressed = start_of(0.018)
     deep = re.match(
-        r"the tool starts (\S+) mm deep in 'block', its part 'ball', at .* -0\.018 m$", pressed['start'][0]
+        r"the tool starts up to (\S+) mm deep in 'block', its part 'ball', about .* -0\.018 m$",
+        pressed['start'][0],
     )
     # 2 mm at the ball's pole; the deepest sample lies beside it.
     expect(not pressed['free'] and deep and 1.9 < float(deep[1]) <= 2, pressed)

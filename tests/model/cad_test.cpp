@@ -354,6 +354,23 @@ TEST_F(Cad, HowFarItIsIsToldAndItCanBeCancelledBetween) {
   EXPECT_THAT(mesh.error().sentence, HasSubstr("was cancelled"));
 }
 
+TEST_F(Cad, ABrepThatIsCutShortIsToldAtOnce) {
+  const std::string path = folder_.path("ball.brep");
+  ASSERT_TRUE(BRepTools::Write(BRepPrimAPI_MakeSphere(1).Shape(), path.c_str()));
+  std::ifstream whole(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(whole)), {});
+  while (text.back() == '\n' || text.back() == ' ') text.pop_back();
+  folder_.write("bare.brep", text);  // its last number is the file's last byte
+  EXPECT_EQ(read(folder_.path("bare.brep")).triangles, read(path).triangles);
+  for (const double part : {0.2, 0.5, 0.9}) {
+    folder_.write("half.brep",
+                  text.substr(0, static_cast<std::size_t>(part * static_cast<double>(text.size()))));
+    const auto mesh = import_mesh(folder_.path("half.brep"), 1, report_);
+    ASSERT_FALSE(mesh) << part;
+    EXPECT_THAT(mesh.error().sentence, HasSubstr("half.brep' is cut short")) << part;
+  }
+}
+
 TEST_F(Cad, APartIsAddressedByNamePathInstanceAndNumber) {
   const Mesh mesh = read(engine("engine.step"));
   const auto only = [&](const char* name) {

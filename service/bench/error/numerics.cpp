@@ -268,9 +268,11 @@ class NumericsBench {
              {wrong[precision] / tried, wrong[precision] == 0 ? "held" : "lost"}, gap);
     }
     facts_.more.emplace_back(
-        "touching", fmt::format("the lattice step is {:.3g} m there: gaps below half of it are touch, by "
-                                "definition (docs/EXACTNESS.md); the error is the share of wrong answers",
-                                step_m_));
+        "touching",
+        fmt::format("the lattice step is {:.3g} m there, to whose points corners are rounded: that "
+                    "decides gaps and overlaps of a step and less; the error is the share of "
+                    "wrong answers",
+                    step_m_));
   }
 
   /// A hand that presses into a wall 5 m from the origin and out, results of all ages: the force felt against
@@ -374,16 +376,18 @@ class NumericsBench {
   /// Where palpate loses what fp64 holds, and why. A length that is short in steps of the lattice is rounded
   /// by up to a step, which costs kLost below 1 / kLost of them.
   void find_losses() {
-    std::size_t losses = 0, unexplained = 0;
+    std::size_t losses = 0, unexplained = 0, refusals = 0;
     for (const auto& [name, all] : seen_)
       for (const Seen& seen : all) {
-        if (seen.precision != "palpate" || seen.outcome.text == "held" ||
-            seen.outcome.text.starts_with("refused"))
-          continue;
+        if (seen.precision != "palpate" || seen.outcome.text == "held") continue;
         const bool held = std::any_of(all.begin(), all.end(), [&](const Seen& other) {
           return other.precision == "fp64" && other.value == seen.value && other.outcome.text == "held";
         });
         if (!held) continue;
+        if (seen.outcome.text.starts_with("refused")) {
+          ++refusals;
+          continue;
+        }
         ++losses;
         const double steps = seen.step_m > 0 ? seen.length / seen.step_m : 0;
         const bool explained = seen.step_m > 0 && seen.length >= 0 && steps < 1 / kLost;
@@ -398,9 +402,10 @@ class NumericsBench {
       }
     facts_.findings.insert(
         facts_.findings.begin(),
-        {"",
-         fmt::format("palpate loses {} of {} answers that fp64 holds, {} of them without a stated reason.",
-                     losses, held_by("fp64"), unexplained)});
+        {"", fmt::format(
+                 "Of {} answers that fp64 holds palpate loses {}, {} of them without a stated reason, and "
+                 "refuses {}, in a sentence.",
+                 held_by("fp64"), losses, unexplained, refusals)});
     facts_.more.emplace_back("lost without a reason", fmt::format("{}", unexplained));
   }
 
@@ -435,13 +440,17 @@ class NumericsBench {
   std::vector<Chart> charts() const {
     std::vector<Chart> out;
     for (const auto& [name, all] : seen_) {
-      Chart chart{.title = "Relative error of the force: " + name,
-                  .unit = "",
-                  .labels = {},
-                  .series = {},
-                  .log_x = true,
-                  .log_y = true,
-                  .x_title = all.front().parameter};
+      std::string words = name;
+      std::ranges::replace(words, '_', ' ');
+      Chart chart{
+          .title =
+              (name == "touching" ? "Share of wrong answers: " : "Relative error of the force: ") + words,
+          .unit = "",
+          .labels = {},
+          .series = {},
+          .log_x = true,
+          .log_y = true,
+          .x_title = all.front().parameter};
       // A colour a precision; circles where it held, crosses where it is lost, triangles at 100 % where it
       // refused.
       std::size_t ink = 0;

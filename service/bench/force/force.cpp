@@ -76,7 +76,8 @@ Result<void> bench_force(const BenchOptions& options, const Parts& parts) {
           }
         }
       charts.push_back(std::move(chart));
-      if (!console.progress("cases", static_cast<double>(i + 1) / static_cast<double>(cases.size())))
+      if (!console.progress("the judge's cases",
+                            static_cast<double>(i + 1) / static_cast<double>(cases.size())))
         return Error{ErrorCode::kInternal, "interrupted"};
     }
   }

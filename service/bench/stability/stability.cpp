@@ -68,6 +68,7 @@ double critical(const Cell& cell) {
 /// ticks old when it comes and 2c − 1 when it goes. Printed, n = c: a tick's motion is lost at each result
 /// and made good over c ticks. Corrected: none.
 double theory(const Cell& cell) {
+  if (cell.law == LawKind::kPrinted && cell.n != cell.delay) return std::nan("");
   const double c = cell.delay;
   const double lag = cell.law == LawKind::kHold      ? (1.5 * c - 0.5) * kTickSeconds
                      : cell.law == LawKind::kPrinted ? (c - 1) / (2 * c) * kTickSeconds

@@ -45,7 +45,7 @@ HttpResponse examined(SceneStore& store, SceneLease& scene, const std::vector<Po
   if (client_gone)  // for the log; nginx counts by this number, too
     return Problem{499, "client-gone", "the client closed the connection before its path was examined", ""};
   if (!report) return problem_of(report.error());
-  HttpResponse response(200, path_page(loaded, *report, "The path that was recorded", name,
+  HttpResponse response(200, path_page(loaded, *report, "The path asked about", name,
                                        backend.name() + " on " + backend.device()));
   response.type = "text/html; charset=utf-8";
   // It runs nothing, wherever it is shown.
