@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kPathFooter =
     R"(Between two poses that follow each other the tool moves on a screw: about one axis, the short way, and along it. Prints one JSON object: clear, first_contact
-(pose, with its fraction on the way to the next; parts), least clearance (at the poses of a clear path, 0 where one touches within the tolerance; else 0, at the first contact), worst depth at the poses (null: none touches), travel_m (of the tool's centre, straight from pose to pose),
+(pose, with its fraction on the way to the next; parts), least clearance (at the poses of a clear path, to the lattice step below; 0 where one touches within the tolerance or is free by less than a step; else 0, at the first contact), worst depth at the poses (null: none touches), travel_m (of the tool's centre, straight from pose to pose),
 the parts that touch at a pose or at a first contact between two, by name, and what was examined; with --tolerance also how many poses have a contact that does not count, and at how many of them no depth is known, for neither body has a sample in the other (sheets, surfaces that coincide). A first contact is never late, and early by no more than early_m and a lattice step. With --out DIR also path.csv, a row a pose, path.json, and path.html with pictures of the closest moments.
 Exit codes: 0 the path is clear, 5 it is not, others as ever. A path of which nothing was examined is an error, never clear.
 

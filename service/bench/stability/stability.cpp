@@ -84,6 +84,9 @@ void add_cell(BenchTable& table, const std::string& model, const Cell& cell, dou
                         std::isfinite(theory_k) ? BenchCell(theory_k) : BenchCell(std::string())});
 }
 
+/// A law has one colour in all charts.
+std::size_t ink_of(LawKind law) { return static_cast<std::size_t>(law); }
+
 Chart lines(std::string title, std::string x_title, std::string unit, bool log_x, bool log_y) {
   Chart chart;
   chart.title = std::move(title);
@@ -105,9 +108,19 @@ Result<void> measure_formulas(Console& console, BenchTable& table, std::vector<C
     const double all = static_cast<double>(std::size(kLaws) * values.size());
     double done = 0;
     Chart chart = lines("Highest stable K, " + model, x_title, "N/m", true, true);
+    chart.caption = fmt::format(
+        "hold: a result is kept until the next; printed: the law as the chapter has it; corrected: "
+        "ours. Linear: pressed deep into the wall; unilateral: bouncing on it. Theory is drawn where "
+        "there is one, of the printed law for n = c alone. A point at {:g} N/m: nothing above it was "
+        "stable, and nothing below it was tried.",
+        kLow);
     for (const LawKind law : kLaws) {
-      Chart::Series series{name_of(law), {}, {}},
-          expected{std::string(name_of(law)) + ", theory", {}, {}, true};
+      Chart::Series series{.label = name_of(law), .x = {}, .y = {}, .ink = ink_of(law)},
+          expected{.label = std::string(name_of(law)) + ", theory",
+                   .x = {},
+                   .y = {},
+                   .expected = true,
+                   .ink = ink_of(law)};
       for (const double value : values) {
         if (!console.progress("the highest stable K", done++ / all)) return;
         Cell cell{.law = law};
@@ -211,7 +224,8 @@ BackendMaker engine_of(const Parts& parts, Profile profile) {
 /// old against none.
 Result<void> measure_queries(const Parts& parts, Console& console, BenchTable& table, Chart& chart) {
   const SimulatedMaker make = simulated(parts);
-  for (const LawKind law : kLaws) chart.series.push_back({name_of(law), {}, {}});
+  for (const LawKind law : kLaws)
+    chart.series.push_back({.label = name_of(law), .x = {}, .y = {}, .ink = ink_of(law)});
   chart.series.push_back({"no delay", {}, {}});
   for (const ContactCase& what : pressed_contacts()) {
     console.step("closing the loop over " + what.name);
@@ -249,7 +263,8 @@ Result<void> measure_bodies(const Parts& parts, Console& console, BenchTable& ta
     cell.hand_damping = device.hand_damping_n_s_per_m;
     add_cell(table, model, cell, found, expected);
   };
-  for (const LawKind law : kLaws) chart.series.push_back({name_of(law), {}, {}});
+  for (const LawKind law : kLaws)
+    chart.series.push_back({.label = name_of(law), .x = {}, .y = {}, .ink = ink_of(law)});
   chart.series.push_back({"theory without delay", {}, {}});
   for (const BodyCase& what : body_cases()) {
     console.step("six degrees of freedom: " + what.name);
