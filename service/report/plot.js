@@ -232,11 +232,15 @@ const Plot = (() => {
           out.push(`<text x="${(ends[0] + 4).toFixed(1)}" y="${top + 11}" fill="var(--soft)">${
               safe(text)}</text>`);
       }
-      for (const v of ticksOf(this.kind, low, high, this.knee, 5, spec.integers))
+      const marked = [];
+      for (const v of ticksOf(this.kind, low, high, this.knee, 5, spec.integers)) {
+        if (marked.some((y) => Math.abs(y - up(v)) < 12)) continue;  // its number would lie on another's
+        marked.push(up(v));
         out.push(
             `<path d="M${left} ${up(v).toFixed(1)}H${this.width - right}" stroke="var(--grid)"/><text x="${
                 left -
                 6}" y="${(up(v) + 4).toFixed(1)}" text-anchor="end" fill="var(--soft)">${number(v)}</text>`);
+      }
       const xTicks = spec.xLog ?
           logTicks(x0, x1, Math.max(2, Math.floor(this.width / 80))) :
           linearTicks(x0, x1, Math.max(3, Math.floor(this.width / 95)), spec.xIntegers);
@@ -307,6 +311,8 @@ const Plot = (() => {
           safe(this.describe())}" font-size="11" font-family="system-ui, sans-serif">${out.join('')}</svg>`;
       const kind = this.figure.querySelector('[data-do=kind]');
       if (kind) {
+        this.figure.querySelector('figcaption span').textContent =
+            [spec.unit, this.kind === 'linear' ? '' : 'logarithmic axis'].filter(Boolean).join(', ');
         kind.textContent = this.kind === 'linear' ? 'log' : 'linear';
         kind.title =
             'The values’ axis: ' + (this.kind === 'linear' ? 'make it logarithmic' : 'logarithmic now');
