@@ -244,7 +244,7 @@ class Summing {
     const LatticeMesh &mockup = frame_.mockup(), &tool = frame_.tool_mesh();
     const auto below = nearest(tool, frame_.scene.tool_rest_tree, to_tool(frame_.pose, point));
     if (!below || ignored(id)) return;
-    const bool sheet = is_sheet(mockup, id);
+    const bool sheet = is_sheet(mockup, id) || !frame_.scene.mockup_has_inside;
     Push push{.at = point,
               .against = -turned(frame_.pose, tool.unit_normal_q30[below->triangle]),
               .depth = below->steps};

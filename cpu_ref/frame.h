@@ -17,10 +17,11 @@ struct Prepared {
   const SceneGeometry* geometry = nullptr;
   Profile profile = Profile::kRefined;
   Partition mockup;
-  Partition tool;               ///< `refined` only
-  bool tool_has_inside = true;  ///< closed, or OpenBody::has_inside()
-  BoxTree mockup_tree;          ///< boxes of the mock-up's triangles
-  BoxTree tool_rest_tree;       ///< `refined`: boxes of the tool's triangles in its own frame
+  Partition tool;                 ///< `refined` only
+  bool mockup_has_inside = true;  ///< closed, or OpenBody::has_inside(); `refined`
+  bool tool_has_inside = true;    ///< closed, or OpenBody::has_inside()
+  BoxTree mockup_tree;            ///< boxes of the mock-up's triangles
+  BoxTree tool_rest_tree;         ///< `refined`: boxes of the tool's triangles in its own frame
 
   bool refined() const { return profile == Profile::kRefined; }
   /// No inside was found: its samples push as a sheet's do (EXACTNESS section 8).

@@ -182,6 +182,8 @@ class RefBackend final : public CollisionBackend {
         for (std::uint32_t m = 0; m < geometry.tool.triangles.size(); ++m)
           boxes.push_back(geometry.tool.collapsed(m) ? Box() : triangle_of(geometry.tool, m).box());
         scene->tool_rest_tree.build(std::move(boxes));
+        scene->mockup_has_inside = geometry.mockup.closed ||
+                                   OpenBody(geometry.mockup, scene->mockup_tree, scene->mockup).has_inside();
         scene->tool_has_inside =
             geometry.tool.closed || OpenBody(geometry.tool, scene->tool_rest_tree, scene->tool).has_inside();
       }

@@ -30,6 +30,7 @@ gpu::SceneConstants scene_constants(const SceneGeometry& geometry, const Plan& p
   }
   out.sample_spacing = geometry.sample_spacing;
   out.contact_samples = geometry.contact_samples;
+  out.mockup_has_inside = prepared.mockup_has_inside ? 1 : 0;
   out.tool_has_inside = prepared.tool_has_inside ? 1 : 0;
   out.fine = prepared.fine;
   return out;

@@ -9,7 +9,7 @@ namespace palpate {
 struct PreparedGrids {
   gpu::GridConstants mockup{}, tool{};
   gpu::GridConstants fine{};  ///< the tool's finer one, or its own
-  bool tool_has_inside = false;
+  bool mockup_has_inside = false, tool_has_inside = false;
 };
 
 /// Numbers of a prepared scene.

@@ -8,7 +8,8 @@
 #include "shaders/shared/frame_field.h"
 
 layout(constant_id = 0) const bool CLOSED = true;   // the tool
-layout(constant_id = 1) const bool SHEETS = true;   // the mock-up has some
+layout(constant_id = 1) const bool SHEETS = true;   // some of the mock-up's samples are a sheet's
+layout(constant_id = 2) const bool INSIDE = true;   // the mock-up has an inside
 
 CONSTANT(kBindScene, SceneConstants, scene);
 CONSTANT(kBindFrameInput, FrameInput, frame_input);
@@ -84,7 +85,7 @@ bool push_of(Asked asked, int32_t shells, Depth depth, out Push push) {
   if (depth.triangle == kNone || is_ignored(id)) return false;
   push.at = asked.point;
   push.against = -turned(body_normals(depth.triangle));
-  push.sheet = SHEETS && (mockup_info(id) & kInfoSheet) != 0u;
+  push.sheet = SHEETS && (!INSIDE || (mockup_info(id) & kInfoSheet) != 0u);
   if (SHEETS) {
     const uvec3 corners = body_triangles(depth.triangle);
     const ivec3 out_of = way_out(uint32_t(depth.steps), body_normals(depth.triangle), body_vertices(corners.x),

@@ -38,7 +38,9 @@ constexpr std::array kQuick{"peg of 24 sides tilted, play 0.3 mm",
                             "thin plate whose faces do not meet on a pin",
                             "cone's tip on a block",
                             "sheet from below",
-                            "open box from outside"};
+                            "open box from outside",
+                            "block in an open box",
+                            "open box round a block"};
 
 /// What runs, chosen beforehand: nothing is skipped.
 std::vector<ForceCaseMaker> asked_cases() {

@@ -54,11 +54,12 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   out.plan_ = plan;
   const BodyConstants &mockup = scene.constants.mockup, &tool = scene.constants.tool;
   out.inside_ = scene.constants.tool_has_inside != 0;
-  const std::uint32_t inside = out.inside_ ? 1 : 0, listed = scene.tool_sample_points ? 1 : 0;
+  const std::uint32_t inside = out.inside_ ? 1 : 0, mockup_inside = scene.constants.mockup_has_inside,
+                      listed = scene.tool_sample_points ? 1 : 0;
   const auto has_sheets = [](const LatticeMesh& mesh) {
     return std::ranges::any_of(mesh.flags, [](std::uint8_t flags) { return (flags & kTriangleSheet) != 0; });
   };
-  const std::uint32_t mockup_sheets = has_sheets(geometry.mockup) ? 1 : 0,
+  const std::uint32_t mockup_sheets = mockup_inside == 0 || has_sheets(geometry.mockup) ? 1 : 0,
                       tool_sheets = !out.inside_ || has_sheets(geometry.tool) ? 1 : 0;
   struct ShaderPlan {
     FrameShader& shader;
@@ -69,7 +70,10 @@ Result<FrameField> FrameField::create(VulkanDevice& device, const SceneGeometry&
   for (const ShaderPlan& made_for : std::initializer_list<ShaderPlan>{
            {out.members_, spirv::field_members, {{0, inside}, {1, listed}}},
            {out.points_, spirv::field_points, {{0, mockup.closed}, {1, listed}}},
-           {out.from_mockup_, spirv::field_from_mockup, {{0, tool.closed}, {1, mockup_sheets}}, out.inside_},
+           {out.from_mockup_,
+            spirv::field_from_mockup,
+            {{0, tool.closed}, {1, mockup_sheets}, {2, mockup_inside}},
+            out.inside_},
            {out.from_tool_, spirv::field_from_tool, {{0, mockup.closed}, {1, inside}, {2, tool_sheets}}},
            {out.result_, spirv::field_result},
            {out.touch_result_, spirv::field_result, {{kFieldId, 0u}}, batch},

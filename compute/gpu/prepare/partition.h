@@ -38,7 +38,7 @@ std::uint32_t sort_lists(PrepareSteps& steps, const VulkanBuffer& entry_voxel, c
 void classify(PrepareSteps& steps, const LatticeMesh& mesh, const VoxelPairs& pairs, BodyBuffers& body);
 
 /// Fills `body.partition.shells` of a body that is not closed. After classify(). Whether it bounds an
-/// inside, if it has a face (EXACTNESS.md section 4, "Tool without inside").
+/// inside, if it has a face (EXACTNESS.md section 4, "Without inside").
 bool count_shells(PrepareSteps& steps, const VoxelPairs& pairs, BodyBuffers& body);
 
 }  // namespace palpate

@@ -154,8 +154,11 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
   const VoxelPairs pairs =
       build_lists(steps, geometry.mockup, geometry.mockup_grid, 0, "mock-up", out.mockup);
   classify(steps, geometry.mockup, pairs, out.mockup);
-  bool tool_has_inside = false;
-  if (refined && !geometry.mockup.closed) count_shells(steps, pairs, out.mockup);
+  bool mockup_has_inside = geometry.mockup.closed, tool_has_inside = false;
+  if (refined && !geometry.mockup.closed) {
+    const bool bounds = count_shells(steps, pairs, out.mockup) && has_faces(geometry.mockup);
+    mockup_has_inside = bounds || out.mockup.partition.has_internal;
+  }
   make_search_tables(steps, geometry, refined, out);
   if (refined) {
     const VoxelPairs tool_pairs =
@@ -178,6 +181,7 @@ Result<PreparedScene> prepare_scene(VulkanDevice& device, const SceneGeometry& g
                                   {.mockup = out.mockup.partition.grid,
                                    .tool = out.tool.partition.grid,
                                    .fine = out.fine.brick_slot ? out.fine.grid : out.tool.partition.grid,
+                                   .mockup_has_inside = mockup_has_inside,
                                    .tool_has_inside = tool_has_inside});
   out.scene = steps.filled("constants", &out.constants, 1, sizeof out.constants);
   steps.progress("prepared", 1);

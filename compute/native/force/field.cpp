@@ -143,7 +143,7 @@ void PressureField::Extras::for_each(std::uint32_t triangle, std::uint32_t level
 PressureField PressureField::make(const SceneGeometry& geometry, const TriangleTree& mockup,
                                   const InsideSearch& in_mockup, const TriangleTree& tool,
                                   const InsideSearch& in_tool, std::span<const std::uint32_t> order,
-                                  bool tool_has_inside) {
+                                  const HasInside& has_inside) {
   PressureField out;
   out.geometry_ = &geometry;
   out.in_tool_ = &in_tool;
@@ -152,7 +152,7 @@ PressureField PressureField::make(const SceneGeometry& geometry, const TriangleT
     lane.tool_depth = DepthSearch(geometry.tool, tool, geometry.sample_spacing);
     lane.in_mockup = in_mockup;
   }
-  out.tool_has_inside_ = tool_has_inside;
+  out.has_inside_ = has_inside;
   out.mockup_extras_ = Extras(geometry.mockup);
   out.tool_extras_ = Extras(geometry.tool);
   out.lever_shift_ = lever_shift(geometry.tool_radius);
@@ -319,7 +319,7 @@ void PressureField::push_from_mockup(const LatticePose& pose, std::uint32_t stat
   const DepthSearch::Depth below = lane.tool_depth.below(in_tool, lane.near_tool);
   lane.near_tool = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(static_id, lane)) return;
-  const bool sheet = is_sheet(geometry_->mockup, static_id);
+  const bool sheet = !has_inside_.mockup || is_sheet(geometry_->mockup, static_id);
   const Int3 against = -turned(pose, sheet ? lane.tool_depth.way_out(in_tool, below.triangle, below.steps)
                                            : geometry_->tool.unit_normal_q30[below.triangle]);
   const bool thin = is_thin(geometry_->mockup, static_id), in_thin = is_thin(geometry_->tool, below.triangle);
@@ -336,7 +336,7 @@ void PressureField::push_from_tool(const LatticePose& pose, std::uint32_t mobile
   const DepthSearch::Depth below = lane.mockup_depth.below(point, lane.near_mockup);
   lane.near_mockup = below.place;
   if (below.triangle == DepthSearch::kNobody || is_ignored(below.triangle, lane)) return;
-  const bool sheet = !tool_has_inside_ || is_sheet(geometry_->tool, mobile);
+  const bool sheet = !has_inside_.tool || is_sheet(geometry_->tool, mobile);
   const Int3 against = sheet ? lane.mockup_depth.way_out(point, below.triangle, below.steps)
                              : geometry_->mockup.unit_normal_q30[below.triangle];
   const bool thin = is_thin(geometry_->tool, mobile), in_thin = is_thin(geometry_->mockup, below.triangle);
@@ -532,7 +532,7 @@ void PressureField::sum(const LatticePose& pose, ContactSets& sets, const FoundS
     const std::size_t size = kPart << mockup_level_.whole;
     return std::min((count + size - 1) / size, kMostOfABody);
   };
-  const std::span<const StaticResult> statics = tool_has_inside_ && !mockup_extras_.empty()
+  const std::span<const StaticResult> statics = has_inside_.tool && !mockup_extras_.empty()
                                                     ? std::span(found.statics)
                                                     : std::span<const StaticResult>();
   const std::size_t of_samples = parts_of(found.samples.size()), of_statics = parts_of(statics.size());

@@ -15,6 +15,11 @@
 
 namespace palpate {
 
+/// Which bodies have an inside (docs/EXACTNESS.md section 4, "Without inside").
+struct HasInside {
+  bool mockup = true, tool = true;
+};
+
 /// The pressure field at a pose (docs/EXACTNESS.md section 8), on the host. One thread and its helper; make()
 /// keeps references to its arguments; sum() allocates only when a contact is larger than all before.
 class PressureField {
@@ -23,7 +28,7 @@ class PressureField {
   static PressureField make(const SceneGeometry& geometry, const TriangleTree& mockup,
                             const InsideSearch& in_mockup, const TriangleTree& tool,
                             const InsideSearch& in_tool, std::span<const std::uint32_t> order,
-                            bool tool_has_inside);
+                            const HasInside& has_inside);
 
   /// What is wanted of a field.
   struct Wanted {
@@ -120,7 +125,7 @@ class PressureField {
   const SceneGeometry* geometry_ = nullptr;
   const InsideSearch* in_tool_ = nullptr;
   Extras mockup_extras_, tool_extras_;
-  bool tool_has_inside_ = true;
+  HasInside has_inside_;
   int lever_shift_ = 0;
   std::vector<OwnSamples> own_;    ///< by tool triangle; empty: the tool's samples are too many to list
   std::vector<Int3> own_samples_;  ///< of the tool, in its lattice frame; of a triangle the coarsest first

@@ -29,8 +29,9 @@ std::unique_ptr<NarrowPhase> NarrowPhase::make(const SceneGeometry& geometry, co
   out->mobiles_.resize(geometry.tool.triangles.size());
   InsideSearch in_mockup(geometry.mockup, out->mockup_, scene.search->boxes);
   in_mockup.use(open.mockup);
-  out->field_ = PressureField::make(geometry, scene.search->triangles, in_mockup, out->tool_triangles_,
-                                    out->in_tool_, order, scene.constants.tool_has_inside != 0);
+  out->field_ = PressureField::make(
+      geometry, scene.search->triangles, in_mockup, out->tool_triangles_, out->in_tool_, order,
+      {.mockup = scene.constants.mockup_has_inside != 0, .tool = scene.constants.tool_has_inside != 0});
   return out;
 }
 

@@ -25,7 +25,7 @@ class OpenShells {
   int middle(std::uint32_t boundary) const { return middle_[boundary]; }
   void prefetch(std::uint32_t boundary) const { __builtin_prefetch(&middle_[boundary]); }
   /// Whether a body with a face bounds an inside: of one with none no middle is in a shell, and none in doubt
-  /// (section 4, "Tool without inside").
+  /// (section 4, "Without inside").
   bool bound_an_inside() const;
   /// All voxels see alike.
   bool agree() const { return doubts_.empty(); }

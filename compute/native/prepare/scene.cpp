@@ -113,9 +113,12 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
   if (!at("search", 0.4)) return cancelled();
   out.search = SearchTables::make(geometry, out.mockup, go_on);
   if (!out.search) return cancelled();
+  bool mockup_has_inside = geometry.mockup.closed;
   if (!geometry.mockup.closed) {
     out.mockup_shells = OpenInside::count_shells(geometry.mockup, out.mockup, out.search->boxes, go_on);
     if (!out.mockup_shells) return cancelled();
+    mockup_has_inside =
+        out.mockup.has_internal || (has_faces(geometry.mockup) && out.mockup_shells->bound_an_inside());
   }
   bool tool_has_inside = geometry.tool.closed;
   if (!geometry.tool.closed && has_faces(geometry.tool)) {
@@ -132,6 +135,7 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
                                   {.mockup = out.mockup.grid,
                                    .tool = out.tool.grid,
                                    .fine = out.finest().grid,
+                                   .mockup_has_inside = mockup_has_inside,
                                    .tool_has_inside = tool_has_inside});
   out.know(geometry);
   if (!at("prepared", 1)) return cancelled();

@@ -32,6 +32,7 @@ struct ForceCase {
   std::optional<Vec3> approach{};  ///< the way the tool goes all along: no force along it at first touch, and
                                    ///< no loss while it goes deeper
   std::vector<Truth> truths{};
+  double most_antisymmetry = 0.02;  ///< of ∂F; more where the case says why
 };
 
 /// The tool hangs by K in all of them, N/m.

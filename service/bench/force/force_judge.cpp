@@ -250,7 +250,7 @@ Result<ForceFigures> judge_path(const ForceCase& subject, const SceneGeometry& g
         fmt::format("a step of {:.3g} K Δx at pose {}", out.largest_step, out.largest_step_at));
   if (!subject.slips && out.loop_share > kMostLoop)
     out.broken.push_back(fmt::format("{:.1f} % of the work is lost round the loop", 100 * out.loop_share));
-  if (out.antisymmetry > kMostAntisymmetry)
+  if (out.antisymmetry > subject.most_antisymmetry)
     out.broken.push_back(fmt::format("∂F is {:.1f} % antisymmetric", 100 * out.antisymmetry));
   if (out.first_along > 0) out.broken.emplace_back("pulled in at first touch");
   if (out.largest_loss > kMostLoss)

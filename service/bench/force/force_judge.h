@@ -38,7 +38,7 @@ struct ForceFigures {
 };
 
 /// Limits that hold for every case (docs/ACCURACY.md).
-inline constexpr double kMostStep = 3, kMostLoop = 0.03, kMostAntisymmetry = 0.02, kMostLoss = 0.05;
+inline constexpr double kMostStep = 3, kMostLoop = 0.03, kMostLoss = 0.05;
 
 /// Scales a case's voxel, its own or the program's: 1, or 0.5 and 2 to see whether it matters. Errors: as
 /// build_geometry, and the back end's.
