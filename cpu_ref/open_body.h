@@ -18,8 +18,8 @@ class OpenBody {
       : mesh_(mesh), tree_(tree), partition_(partition) {}
 
   bool inside(const Int3& point);
-  /// Whether anything can be: of a body that bounds nothing no point counts as inside (section 4, "Tool
-  /// without inside").
+  /// Whether anything can be: of a body that bounds nothing no point counts as inside (section 4,
+  /// "Without inside").
   bool has_inside();
   /// What is left of the weight of a sample that lies inside.
   std::uint32_t sure(std::uint32_t weight, const Int3& point);

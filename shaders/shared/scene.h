@@ -77,14 +77,13 @@ PALPATE_ASSERT_SIZE(BodyConstants, 52);
 struct SceneConstants {
   BodyConstants mockup;
   BodyConstants tool;
-  int32_t tool_radius;     // steps
-  int32_t lever_shift;     // of it (model/contact/field.h)
-  int32_t sample_spacing;  // steps, of both bodies
-  uint32_t refined;        // 1: profile `refined`, 0: `paper`
-  uint32_t
-      mockup_has_inside;  // 1: a point can lie in it (docs/EXACTNESS.md section 4, "Without inside"); refined
-  uint32_t tool_has_inside;  // likewise
-  uint32_t mockup_extras;    // extra samples; refined
+  int32_t tool_radius;         // steps
+  int32_t lever_shift;         // of it (model/contact/field.h)
+  int32_t sample_spacing;      // steps, of both bodies
+  uint32_t refined;            // 1: profile `refined`, 0: `paper`
+  uint32_t mockup_has_inside;  // 1: a point can lie in it (docs/EXACTNESS.md section 4); refined
+  uint32_t tool_has_inside;    // likewise
+  uint32_t mockup_extras;      // extra samples; refined
   uint32_t tool_extras;
   uint32_t contact_samples;  // of a body, that say what a contact pushes with; 0: all
   GridConstants fine;  // a second, finer partition of a closed tool, or its own: early answers for samples
