@@ -291,20 +291,28 @@ def test_a_body_that_is_there_twice_pushes_once():
     expect(force[0] > 1 and abs(force[1] / force[0] - 1) < 0.01, force)
 
 
-def test_in_the_mouth_of_an_open_body_nothing_is_pushed():
-    # A ball that lacks a cap, and a plate that lies in its mouth, beside its wall: whatever the voxels.
+def test_in_the_mouth_of_an_open_body_its_wall_alone_pushes():
+    # A ball that lacks a cap. A plate lies in its mouth, free, and with two corners through the wall: that
+    # pushes it back in, whatever the voxels.
     folder = Folder()
     cup = [t for t in sphere(0.03, 24) if sum(p[2] for p in t) / 3 < 0.021]
     folder.write('cup.stl', stl(cup))
     folder.write('plate.stl', stl(box((0.03, 0.03, 0.001))))
+    poses = folder.write('poses.csv', 'x,y,z,qx,qy,qz,qw\n0,0,0.018,0,0,0,1\n0.0065,0,0.018,0,0,0,1\n')
+    forces = []
     for voxel_size in (0.002, 0.004, 0.006, 0.008):
         scene = folder.save(
             static=[{'mesh': 'cup.stl', 'units': 'm'}],
             tool={'mesh': 'plate.stl', 'units': 'm'},
             response={'voxel_size': voxel_size},
         )
-        (line,) = lines_of(palpate('query', scene, '--pose', '0.0065 0 0.018 0 0 0 1', '--json'))
-        expect(line['pairs'] > 0 and line['force'] == [0, 0, 0], (voxel_size, line['force']))
+        free, line = lines_of(palpate('query', scene, '--poses', poses, '--json'))
+        expect(free['pairs'] == 0 and free['force'] == [0, 0, 0], (voxel_size, free['force']))
+        forces.append(line['force'])
+        expect(line['pairs'] > 0 and line['force'][0] < -0.01 and line['force'][2] < -0.01, forces)
+        expect(abs(line['force'][1]) < -0.1 * line['force'][0], forces)
+    # The grid's margin moves the lattice, by steps of nanometres.
+    expect(all(abs(a - b) < 1e-6 for force in forces for a, b in zip(force, forces[0])), forces)
 
 
 def test_a_thin_plate_without_an_end_pushes_as_a_whole_one_does():
