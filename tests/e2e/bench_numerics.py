@@ -67,9 +67,18 @@ def test_nothing_is_lost_silently():
         and row['outcome'] in ('lost', 'no contact')
         and (row['case'], row['value']) in held
     ]
+    refused = [
+        row
+        for row in rows
+        if row['precision'] == 'palpate'
+        and row['outcome'].startswith('refused')
+        and (row['case'], row['value']) in held
+    ]
+    first = facts['findings'][0]
     expect(
         facts['lost without a reason'] == '0'
-        and facts['findings'][0].startswith(f'palpate loses {len(lost)} of {len(held)} '),
+        and first.startswith(f'Of {len(held)} answers that fp64 holds palpate loses {len(lost)}, ')
+        and first.endswith(f' and refuses {len(refused)}, in a sentence.'),
         facts['findings'],
     )
     expect(sum('steps of the lattice' in one for one in facts['findings']) == len(lost), facts['findings'])
