@@ -113,7 +113,7 @@ struct FieldWork {
   FieldBinWork bins[kFieldBinCount];
   int64_t deepest_static;  // the largest φ · 2^32 + (2^32 − 1 − static id); 0: nothing pushes
   int64_t deepest_mobile;  // likewise of the mobile ids
-  int64_t sheet;           // not 0: a sheet's sample pushed, or one of a tool without inside
+  int64_t sheet;           // not 0: a sheet's sample pushed, or one of a body without inside
 };
 PALPATE_CONSTANT uint32_t kWordDeepest = kFieldBinCount * kFieldBinWords;  // static, then mobile
 PALPATE_CONSTANT uint32_t kWordSheet = kWordDeepest + 2u;

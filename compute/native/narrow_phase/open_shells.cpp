@@ -127,7 +127,7 @@ struct Neighbours {
 
 }  // namespace
 
-bool OpenShells::bound_an_inside() const {
+bool OpenShells::bounds_inside() const {
   const auto inside = static_cast<std::size_t>(
       std::ranges::count_if(middle_, [](std::int32_t shells) { return shells > 0; }));
   const auto doubted = static_cast<std::size_t>(

@@ -26,7 +26,7 @@ class OpenShells {
   void prefetch(std::uint32_t boundary) const { __builtin_prefetch(&middle_[boundary]); }
   /// Whether a body with a face bounds an inside: of one with none no middle is in a shell, and none in doubt
   /// (section 4, "Without inside").
-  bool bound_an_inside() const;
+  bool bounds_inside() const;
   /// All voxels see alike.
   bool agree() const { return doubts_.empty(); }
   /// Which of a voxel's 26 neighbours say less of it than itself: bit x + 3 y + 9 z of 27, 13 its own.

@@ -118,14 +118,14 @@ Result<Scene> prepare_scene(const SceneGeometry& geometry, const Plan& plan, con
     out.mockup_shells = OpenInside::count_shells(geometry.mockup, out.mockup, out.search->boxes, go_on);
     if (!out.mockup_shells) return cancelled();
     mockup_has_inside =
-        out.mockup.has_internal || (has_faces(geometry.mockup) && out.mockup_shells->bound_an_inside());
+        out.mockup.has_internal || (has_faces(geometry.mockup) && out.mockup_shells->bounds_inside());
   }
   bool tool_has_inside = geometry.tool.closed;
   if (!geometry.tool.closed && has_faces(geometry.tool)) {
     out.tool_shells = OpenInside::count_shells(geometry.tool, out.tool,
                                                SearchTables::boxes_of(geometry.tool, out.tool), go_on);
     if (!out.tool_shells) return cancelled();
-    tool_has_inside = out.tool.has_internal || out.tool_shells->bound_an_inside();
+    tool_has_inside = out.tool.has_internal || out.tool_shells->bounds_inside();
     if (!tool_has_inside) out.tool_shells = nullptr;
   }
   if (tool_has_inside)

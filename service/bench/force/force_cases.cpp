@@ -201,15 +201,6 @@ ForceCase ring_on_a_shaft() {
   out.truths.push_back({.at = 150, .direction = Vec3(-1, 0, 0), .most_force = {}, .couple_against = {}});
   return out;
 }
-/// A sleeve of sheet metal, thinner than a voxel, whose faces do not meet.
-ForceCase sleeve_on_a_shaft() {
-  ForceCase out = ring_on_a_shaft();
-  out.tool = solids::split(solids::moved(solids::ring(kRadius + 0.2 * kMm, kRadius + 1.0 * kMm, 12 * kMm, 48),
-                                         at(Vec3(0, 0, -6 * kMm))),
-                           1e-3);
-  out.voxel_m = 2 * kMm;
-  return out;
-}
 ForceCase shaft_in_two_bearings() {
   const Mesh bearing = solids::ring(6.05 * kMm, 14 * kMm, 8 * kMm, 48);
   ForceCase out{.name = {},
@@ -452,7 +443,6 @@ std::vector<ForceCaseMaker> force_cases() {
   add("key yawed in its keyway", key_yawed);
   add("tongue between walls", tongue_between_walls);
   add("ring on a shaft", ring_on_a_shaft);
-  add("sleeve whose faces do not meet on a shaft", sleeve_on_a_shaft);
   add("shaft in two bearings", shaft_in_two_bearings);
   add("dovetail lifted", dovetail_lifted);
   add("gears of 20 and 12 teeth", gears);
